@@ -24,6 +24,8 @@ pub struct Pace {
     begun: usize,
     /// Part of the run that is done, in the unit of the shares.
     done: f64,
+    /// Part of it that was done before the elapsed time: by the run that is resumed.
+    earlier: f64,
     /// Time of the steps so far.
     elapsed: Duration,
     last: Option<Instant>,
@@ -48,6 +50,13 @@ impl Pace {
         self.last = None;
     }
 
+    /// The run is resumed: its steps so far took another time.
+    pub const fn resumed(&mut self) {
+        self.earlier = self.done;
+        self.elapsed = Duration::ZERO;
+        self.last = None;
+    }
+
     /// A prompt or a pause: the time since the last step does not count.
     pub const fn interrupted(&mut self) {
         self.last = None;
@@ -69,10 +78,11 @@ impl Pace {
     /// The time left; None: not known, or not yet.
     pub fn left(&self) -> Option<Duration> {
         let total: f64 = self.parts.iter().map(|part| part.share).sum();
-        if self.elapsed < EARLIEST || self.done <= 0.0 {
+        let done = self.done - self.earlier;
+        if self.elapsed < EARLIEST || done <= 0.0 {
             return None;
         }
-        let left = self.elapsed.as_secs_f64() * ((total - self.done) / self.done).max(0.0);
+        let left = self.elapsed.as_secs_f64() * ((total - self.done) / done).max(0.0);
         Duration::try_from_secs_f64(left).ok()
     }
 }
@@ -112,6 +122,15 @@ mod tests {
         pace.interrupted();
         pace.step_done(100, after(500));
         assert_eq!(pace.elapsed, Duration::from_secs(20));
+        // Half of the run was done before it is resumed.
+        let mut resumed = Pace::of(vec![part(40.0, 100)]);
+        resumed.procedure_started();
+        resumed.step_done(50, after(0));
+        resumed.resumed();
+        resumed.step_done(51, after(1000));
+        assert_eq!(resumed.left(), None);
+        resumed.step_done(60, after(1005));
+        assert_eq!(resumed.left(), Some(Duration::from_secs(20)));
         let mut unknown = Pace::default();
         unknown.procedure_started();
         unknown.step_done(1, after(0));

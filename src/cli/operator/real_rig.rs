@@ -45,7 +45,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
         Failure::command_line("no operator is named: nothing was opened")
             .help("--operator \"A. Tester\"")
     };
-    let operator = Some(asked("name of the operator? [your name]", name).ok_or_else(unnamed)?);
+    let operator = Some(asked("name of the operator?", name).ok_or_else(unnamed)?);
     Ok(Attendance {
         operator,
         ..attendance

@@ -1,13 +1,14 @@
 //! The difference of two runs, and the spread of several.
 
 use super::ComparedRow;
+use crate::golden::FLOOR;
 
 /// The second of two runs minus the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// SI.
     pub absolute: f64,
-    /// Relative to the first; None if that is 0.
+    /// Relative to the first; None if that is 0 within rounding.
     pub relative: Option<f64>,
     /// Relative to the combined standard uncertainty √(u₁² + u₂²), if both are known and not both 0.
     pub in_uncertainties: Option<f64>,
@@ -27,7 +28,7 @@ impl Difference {
             .zip(second.u)
             .map(|(first, second)| first.hypot(second))
             .filter(|u| *u > 0.0);
-        let relative = (was != 0.0).then(|| absolute / was.abs());
+        let relative = (was.abs() > FLOOR).then(|| absolute / was.abs());
         Some(Self {
             absolute,
             relative,

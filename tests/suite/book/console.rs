@@ -1,5 +1,6 @@
-//! The console blocks of the book. `sh` runs each `$ ` line in a folder of the page, which contains a copy of `plans/`. The output on
-//! both streams must equal the block of the page. A line `...` represents any lines.
+//! The console blocks of the book. `sh` runs each `$ ` line in a folder of the page, which contains a copy of `plans/` and the plans of
+//! the page whose fence has a file name: `psd rod.psd`. The output on both streams must equal the block of the page. A line `...`
+//! represents any lines.
 
 use std::fs;
 use std::path::Path;
@@ -97,6 +98,12 @@ fn run(page: &Path) -> (String, String) {
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("plans"),
         &folder.path().join("plans"),
     );
+    for block in super::blocks(&text) {
+        let file = block.info.strip_prefix("psd ").unwrap_or_default();
+        if file.ends_with(".psd") && !file.contains('/') {
+            fs::write(folder.path().join(file), &block.body).expect("the plan can be written");
+        }
+    }
     let mut lines = text.lines().peekable();
     let mut new = Vec::new();
     let mut inside = false;

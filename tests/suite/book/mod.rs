@@ -5,6 +5,7 @@ mod console;
 mod figures;
 mod generated;
 mod messages;
+mod one_step;
 mod plans;
 
 use std::fs;

@@ -1,5 +1,6 @@
 //! The plans of the book. The words after a fence describe its block. `psd` alone marks a whole plan, `psd plans/NAME.psd` an excerpt of
-//! that file. `psd E301` marks a plan with that error, `psd fragment` a part that is not checked. Any other word names a whole plan.
+//! that file. `psd E301` marks a plan with that error, `psd fragment` a part that is not checked. Any other word names a whole plan; the
+//! console blocks find it under a file name: `psd rod.psd`.
 
 use std::fs;
 use std::path::Path;

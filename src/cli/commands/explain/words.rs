@@ -1,10 +1,11 @@
-//! The page of a word of the language: a block, field, option, result, function or unit. In: a word, alone or behind that of its block or
+//! The page of a word of the language: a block, field, option, result, function, cross-section or unit. In: a word, alone or behind that of its block or
 //! of a procedure, such as `impact.contact` or `hit.max_displacement`. Out: text. The words are those of the schema.
 
 use std::fmt::Write as _;
 
 use crate::settings::Settings;
 use psd_lsp::{describe, units_of};
+use psd_plan::schema::sections::{SECTIONS, VALUES};
 use psd_plan::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, Variant};
 use psd_text::units::display::{self, significant, trimmed};
 use psd_text::units::{Dimension, unit};
@@ -37,6 +38,10 @@ pub fn page(word: &str, settings: Settings) -> Option<String> {
             let text = format!("**{}**\n\n{}", function.name, function.doc);
             add(&mut meanings, "a function".to_owned(), text);
         }
+        for section in SECTIONS.iter().filter(|section| section.name == name) {
+            let text = section_page(section);
+            add(&mut meanings, "a cross-section".to_owned(), text);
+        }
     }
     if let Ok(unit) = unit::parse(word) {
         add(&mut meanings, "a unit".to_owned(), unit_page(word, unit));
@@ -67,6 +72,7 @@ pub fn all() -> Vec<&'static str> {
         add(block.fields, &mut words);
     }
     words.extend(FUNCTIONS.iter().map(|function| function.name));
+    words.extend(SECTIONS.iter().map(|section| section.name));
     words
 }
 
@@ -151,6 +157,16 @@ fn block_page(block: &BlockKind) -> String {
     text
 }
 
+/// A cross-section with its arguments and its numbers.
+fn section_page(section: &Variant) -> String {
+    let mut text = describe::variant(section);
+    text.push_str("\n\nNumbers:");
+    for value in VALUES {
+        let _ = write!(text, "\n- `.{}`: {}", value.name, value.doc);
+    }
+    text
+}
+
 fn unit_page(word: &str, unit: unit::Unit) -> String {
     let base = display::si_unit(unit.dimension);
     // A scale with a zero of its own has no factor: its zero is said.
@@ -217,6 +233,7 @@ mod tests {
             "{of_impact}"
         );
         assert!(shown("hertz").contains("an option of `contact`"));
+        assert!(shown("pipe").contains("`.second_moment`"));
         assert!(shown("kip/in").contains("N/m") && shown("kN").contains("force"));
         assert!(shown("degC").contains("0 degC = 273.15 K"));
         assert!(page("max_displacment", Settings::PLAIN).is_none());

@@ -16,7 +16,6 @@ use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::record_file;
 use crate::files::record_file::{ReadRecord, journal_of};
 use crate::files::{plan_file, provenance};
-use crate::operator::expected::Expected;
 use crate::operator::watch::{Attendance, Signals, Watcher};
 use crate::operator::{confirm_release, expected, held, real_rig};
 use crate::output::{print_message, print_result};
@@ -92,12 +91,7 @@ impl ResumeArguments {
             };
             given.clone().or_else(asked).ok_or_else(missing)
         };
-        let operator = answer(
-            &self.operator,
-            "operator",
-            "name of the operator? [your name]",
-            name,
-        )?;
+        let operator = answer(&self.operator, "operator", "name of the operator?", name)?;
         let reason = answer(
             &self.reason,
             "reason",
@@ -174,14 +168,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .filter(|line| line.kind == EntryKind::Step)
         .count() as u64;
-    let Expected {
-        extent,
-        steps: planned,
-        ..
-    } = expected::expectation(&plan);
+    let whole = expected::expectation(&plan);
     let before = expected::expectation(&read.plan).extent.speed;
-    let planned_speed = ("highest speed in the plan", before, extent.speed);
-    let expected = expected::rest(extent, planned, steps);
+    let planned_speed = ("highest speed in the plan", before, whole.extent.speed);
+    let expected = expected::rest(whole.extent, whole.steps, steps);
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
@@ -206,6 +196,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         signals,
         true,
     ));
+    watcher.borrow_mut().pace(whole.parts());
+    watcher.borrow_mut().predict(whole.procedures);
     let (mut connected, mut torn) = (None, None);
     let (opened, put_aside) = (&mut connected, &mut torn);
     let begin = || {
@@ -218,6 +210,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             .insert(connect(&at_its_datum, &plan.limits, &stop_request)?)
             .rig;
         watcher.borrow_mut().watch(rig.live());
+        watcher.borrow_mut().resumed();
         watcher.borrow_mut().expect(expected);
         let resumption = settle(
             arguments,

@@ -41,6 +41,8 @@ pub struct Model {
     pub left: Option<Duration>,
     /// Change of target in the last step \[m\].
     pub increment: Option<f64>,
+    /// Of each axis, whether its last change of target was towards negative displacements; None: its target has not changed.
+    pub falling: Vec<Option<bool>>,
     /// The events; the newest is last.
     pub events: VecDeque<Event>,
     /// The title in place of a running procedure: `monitor`.
@@ -84,10 +86,12 @@ pub struct LimitRow {
     pub kept: bool,
     /// None if no value is known yet.
     pub value: Option<f64>,
+    /// Whether the rig moves towards the low end; None: it has not moved, or the limit bounds an absolute value.
+    pub falling: Option<bool>,
 }
 
 impl LimitRow {
-    /// Distance to the end that is approached, the end on the side of the value from zero; negative beyond it.
+    /// Distance to the end that is approached; negative beyond an end.
     pub fn margin(&self) -> Option<f64> {
         let value = self.value?;
         let Interval { low, high } = self.limit;
@@ -99,10 +103,13 @@ impl LimitRow {
         margin.is_finite().then_some(margin)
     }
 
-    /// Whether this value is nearer to the low end, seen from zero. Without zero in the limit: whether it is nearer to that end.
+    /// Whether the low end is approached: the end in the direction of the motion. Without a motion: the end on the side of the value from
+    /// zero, or the nearer end of a limit without zero. A value beyond an end is at that end.
     pub fn approaches_low(&self, value: f64) -> bool {
         let Interval { low, high } = self.limit;
-        if low <= 0.0 && high >= 0.0 && value != 0.0 {
+        if let Some(falling) = self.falling {
+            value < low || (falling && value <= high)
+        } else if low <= 0.0 && high >= 0.0 && value != 0.0 {
             value < 0.0
         } else {
             !self.size && value - low < high - value
@@ -124,6 +131,7 @@ impl Model {
             predicted: Arc::default(),
             left: None,
             increment: None,
+            falling: Vec::new(),
             events: VecDeque::new(),
             by_hand: None,
             open_loop: plan.rig.link.as_real().is_some_and(commands_only),
@@ -163,6 +171,13 @@ impl Model {
                 .map(|(to, from)| (to.command - from.command).abs());
             changes.fold(0.0, f64::max)
         });
+        self.falling.resize(report.axes.len(), None);
+        let from = self.last.iter().flat_map(|last| &last.axes);
+        for ((falling, to), from) in self.falling.iter_mut().zip(&report.axes).zip(from) {
+            if to.command.total_cmp(&from.command).is_ne() {
+                *falling = Some(to.command < from.command);
+            }
+        }
         self.curves.push(report);
         self.last = Some(report.clone());
     }
@@ -240,17 +255,19 @@ impl Model {
             tracking_energy_error,
             nrms_error,
         } = self.limits;
-        // For several axes: the one with the largest absolute value.
+        // For several axes: the one with the largest absolute value, and its direction.
         let of = |value: fn((f64, f64)) -> f64| {
             let feedback = self.feedback();
-            let values = feedback.into_iter().map(value);
-            values.reduce(|largest, value| {
-                if value.abs() > largest.abs() {
-                    value
+            let values = feedback.into_iter().map(value).enumerate();
+            let largest = values.reduce(|largest, next| {
+                if next.1.abs() > largest.1.abs() {
+                    next
                 } else {
                     largest
                 }
-            })
+            });
+            let falling = largest.and_then(|(axis, _)| *self.falling.get(axis)?);
+            (largest.map(|(_, value)| value), falling)
         };
         let last = self.last.as_ref();
         let energy = last.and_then(|last| last.energy_error).map(f64::abs);
@@ -271,23 +288,21 @@ impl Model {
             size,
             kept: false,
             value,
+            falling: None,
+        };
+        let directed = |name, dimension, limit, (value, falling)| LimitRow {
+            falling,
+            ..row(name, dimension, limit, false, value)
         };
         let speed_found = last.and_then(|last| last.speed);
         [
-            row(
+            directed(
                 "displacement",
                 Dimension::LENGTH,
                 displacement,
-                false,
                 of(|(displacement, _)| displacement),
             ),
-            row(
-                "force",
-                Dimension::FORCE,
-                force,
-                false,
-                of(|(_, force)| force),
-            ),
+            directed("force", Dimension::FORCE, force, of(|(_, force)| force)),
             LimitRow {
                 kept: true,
                 ..row(
@@ -390,6 +405,10 @@ pub mod tests {
             "0.4 m/s of 1 m/s"
         );
         assert!((rows[2].margin().unwrap() - 0.005).abs() < 1e-12);
+        // On the way back the low end is approached.
+        model.step_done(&step(3, 0.3, 0.024, 5.0));
+        assert!((model.limit_rows()[0].margin().unwrap() - 0.033_998).abs() < 1e-12);
+        model.step_done(&step(3, 0.3, 0.025, 6.0));
         model.step_done(&step(3, 0.3, 0.026, 6.0));
         assert!(
             (model.limit_rows()[2].margin().unwrap() - 0.019).abs() < 1e-12,

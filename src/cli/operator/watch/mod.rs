@@ -182,6 +182,11 @@ impl Watcher {
         self.pace = Pace::of(parts);
     }
 
+    /// The run is resumed here: the steps before have another pace.
+    pub const fn resumed(&mut self) {
+        self.pace.resumed();
+    }
+
     /// Shows the predicted curves of these procedures beside the measured ones.
     pub fn predict(&mut self, procedures: Vec<Reach>) {
         if let Face::Screen(screen) = &self.face {

@@ -229,7 +229,7 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
         });
     }
     let (Some(field), Some((entry, written))) = (field, written) else {
-        return no_field(if declared.kind.result(name).is_some() {
+        return no_field(if field.is_none() && declared.kind.result(name).is_some() {
             NoField::Result
         } else if field.is_some_and(|field| matches!(field.presence, Presence::Default { .. })) {
             NoField::NotWritten
