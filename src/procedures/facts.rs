@@ -160,5 +160,10 @@ mod tests {
             });
         }
         assert!(!undeclared(&frame, 0).contains(&"specimen mass"));
+        assert!(!undeclared(&frame, 0).contains(&"weights of the floors"));
+        if let Some(frame) = &mut frame.specimens[0].frame {
+            *frame = frame.with(|storeys| storeys[0].gravity = 1e4);
+        }
+        assert!(undeclared(&frame, 0).contains(&"weights of the floors"));
     }
 }

@@ -24,6 +24,7 @@ pub struct Solver<V: HasTangents> {
     predicted: bool,
     /// Effective force r* of the recursion at the target \[N\], and the tracking error \[m\].
     effective_force: V,
+    /// With weights R* − G X at the target \[N\] afterwards.
     tracking_error: V,
     /// Work of the dampers in a step whose velocity jumps \[J\].
     damping_work: Option<f64>,
@@ -284,16 +285,19 @@ impl<V: HasTangents> Solver<V> {
                 contact,
             ),
             Some(net) => {
-                let mut read = effective_force.clone();
+                let read = tracking_error;
                 if let Some(gravity) = &form.matrices.gravity {
                     gravity.product(&state.target, &mut state.gravity_force);
                 }
-                read.update([&state.gravity_force], |read, [gravity]| read - gravity);
+                read.update(
+                    [effective_force, &state.gravity_force],
+                    |_, [force, gravity]| force - gravity,
+                );
                 if is_tangent {
                     net.set(read.view());
                     next.force.set(effective_force.view());
                 } else {
-                    form.correct(&state.moment(Some(net)), load_end, &read, next, contact);
+                    form.correct(&state.moment(Some(net)), load_end, read, next, contact);
                     net.set(next.force.view());
                     if let Some(gravity) = &form.matrices.gravity {
                         gravity.mul_add(1.0, &next.displacement, &mut next.force);

@@ -47,6 +47,10 @@ impl Plan {
                 striker.is_some_and(|striker| striker.velocity_uncertainty == 0.0),
             ),
             ("specimen mass", mass_of_one || mass_of_frame),
+            (
+                "weights of the floors",
+                frame.is_some_and(|frame| !frame.axial_loads().is_empty()),
+            ),
         ];
         let own = own
             .into_iter()

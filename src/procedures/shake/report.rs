@@ -84,19 +84,16 @@ fn integration(
         shake.stepping.mode,
     ));
     sentences.extend(tracking::sentence(procedure));
-    sentences.extend(weights(frame_of(run, shake.specimen)));
-    sentences.extend(
-        history
-            .drift_reached
-            .zip(shake.until)
-            .map(|(storey, drift)| {
-                format!(
-                    "The run ended when storey {} reached a drift of {}, before its duration.",
-                    storey + 1,
-                    number::stated(drift, Dimension::LENGTH)
-                )
-            }),
-    );
+    sentences.extend(shake.until.map(|drift| {
+        let drift = number::stated(drift, Dimension::LENGTH);
+        match history.drift_reached {
+            Some(storey) => format!(
+                "The run ended when storey {} reached a drift of {drift}, before its duration.",
+                storey + 1
+            ),
+            None => format!("A drift of {drift} would have ended the run; no storey reached it."),
+        }
+    }));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples; each step uses its value at the end of the step: {}.",
@@ -104,15 +101,6 @@ fn integration(
         ));
     }
     sentences
-}
-
-/// How gravity is computed; None without weights.
-pub(crate) fn weights(frame: Option<&Frame>) -> Option<String> {
-    let weighs = !frame?.axial_loads().is_empty();
-    weighs.then(|| {
-        "P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
-            .to_owned()
-    })
 }
 
 /// The frame that a procedure tests.
@@ -126,7 +114,7 @@ fn of_storeys(frame: &Frame) -> bool {
         .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
 }
 
-/// The integration of a frame, and its damping.
+/// The integration of a frame, its damping and its weights.
 pub(crate) fn integrated(
     frame: Option<&Frame>,
     integrator: Integrator,
@@ -153,7 +141,12 @@ pub(crate) fn integrated(
         (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
         (ShakeDamping::Modal(_), true) => "Each mode has a separate damping ratio.",
     };
-    format!("Integrated by {integrator}. {damping}")
+    let weights = if frame.is_some_and(|frame| !frame.axial_loads().is_empty()) {
+        " P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
+    } else {
+        ""
+    };
+    format!("Integrated by {integrator}. {damping}{weights}")
 }
 
 /// Largest acceleration as applied beside that of the record over the same time and with the same factor.
