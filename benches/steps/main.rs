@@ -136,6 +136,7 @@ fn linear<'a>() -> [Case<'a>; 2] {
                 mass,
                 damping,
                 stiffness,
+                gravity: None,
             };
             let input = SolverInput {
                 matrices: &matrices,
@@ -207,6 +208,7 @@ fn building<'a, S: RestoringForce + Copy + 'a>(
         mass,
         damping,
         stiffness,
+        gravity: None,
     });
     let zero = vec![0.0; storeys];
     let mut solver = FrameSolver::new(&FrameInput {

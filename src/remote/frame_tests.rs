@@ -43,6 +43,7 @@ fn an_explicit_newmark_of_the_client_is_that_of_psd() {
         mass: SymmetricBand::diagonal(&MASSES),
         damping: SymmetricBand::zero(2, 0),
         stiffness: SymmetricBand::from_dense(&frame().stiffness).unwrap(),
+        gravity: None,
     };
     let zero = [0.0; 2];
     let mut own = FrameSolver::new(&FrameInput {

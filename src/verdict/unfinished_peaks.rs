@@ -9,7 +9,8 @@ use psd_plan::formula::{
 };
 use psd_plan::procedures::escalate::block as series;
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{EscalateHistory, History, ImpactHistory, SeriesImpact};
+use psd_plan::procedures::shake::block as shake_schema;
+use psd_plan::record::{EscalateHistory, History, ImpactHistory, SeriesImpact, ShakeHistory};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Condition, DecisionRule};
@@ -35,6 +36,7 @@ pub(super) fn undecided<'a>(
         match history {
             History::Impact(history) => of_impact(history, reference.name, name),
             History::Escalate(history) => of_row(history, reference.name, name),
+            History::Shake(history) => of_shake(history, reference.name, name),
             _ => None,
         }
     })
@@ -213,6 +215,21 @@ fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth>
     } else {
         None
     }
+}
+
+/// Growth of a result of a ground-motion test that a drift ended: every peak may have come later.
+fn of_shake(shake: &ShakeHistory, result: &str, name: &str) -> Option<Growth> {
+    let storey = shake.drift_reached? + 1;
+    let peaks = [
+        shake_schema::MAX_DISPLACEMENT,
+        shake_schema::MAX_DRIFT,
+        shake_schema::MAX_BASE_SHEAR,
+    ];
+    let floors = shake.steps.last()?.floors.computed.len();
+    is(result, &peaks).then(|| Growth {
+        entries: (0..floors).collect(),
+        why: format!("the drift of storey {storey} ended {name}: the peak is not reached"),
+    })
 }
 
 /// The number of floors of a struck frame; None for one degree of freedom.

@@ -207,3 +207,51 @@ fn the_record_of_a_shake_is_enough() {
         "step,storey,time_s,wall_time_s,ground_acceleration_m_per_s2,command_m,displacement_m"
     ));
 }
+
+/// A floor with a weight has the shear of its springs and the work of the weights in the table; net and gross shear differ by P δ/h.
+#[test]
+fn the_table_of_a_frame_with_weights_has_net_and_gross_shear() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("sine.csv"), files("sine.csv").unwrap()).expect("written");
+    let table = |gravity: &str| -> Vec<Vec<String>> {
+        let plan = folder.path().join("plan.psd");
+        let text = format!(
+            "specimen frame {{ storeys = [storey(mass: 1 t, stiffness: 1 MN/m, height: 3 m{gravity})] }}\n\
+             ground sine {{ file = \"sine.csv\" }}\n\
+             shake quake {{\n  ground = sine\n  duration = 1 s\n}}\n\
+             require \"drift\" max(quake.max_drift) < 1 m\n\
+             report {{ formats = [csv] }}\n"
+        );
+        fs::write(&plan, text).expect("written");
+        let out = folder.path().join(format!("run{}", gravity.len()));
+        psd(&["run", plan.to_str().expect("UTF-8"), "--out"], &out);
+        let table = fs::read_to_string(out.join("tables/quake.csv")).expect("a table");
+        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+        table.lines().map(cells).collect()
+    };
+    let (light, heavy) = (table(""), table(", gravity: 300 kN"));
+    let own = ["spring_shear_n", "gravity_energy_j"];
+    assert!(
+        own.iter()
+            .all(|name| !light[0].iter().any(|found| found == name))
+    );
+    let kept: Vec<&String> = heavy[0]
+        .iter()
+        .filter(|name| !own.contains(&name.as_str()))
+        .collect();
+    assert_eq!(kept, light[0].iter().collect::<Vec<_>>());
+    let column = |name: &str| heavy[0].iter().position(|found| found == name).unwrap();
+    let number = |row: &[String], name: &str| -> f64 { row[column(name)].parse().unwrap() };
+    let mut largest: f64 = 0.0;
+    for row in &heavy[1..] {
+        let gross = number(row, "spring_shear_n");
+        let drift = number(row, "drift_m");
+        let net = number(row, "storey_shear_n");
+        assert!((gross - 1e6 * drift).abs() < 1e-9 * gross.abs().max(1.0));
+        assert!((net - (1e6 - 1e5) * drift).abs() < 1e-9 * gross.abs().max(1.0));
+        let work = number(row, "gravity_energy_j");
+        assert!((work - 0.5e5 * drift * drift).abs() < 1e-9 * work.max(1e-3));
+        largest = largest.max(net.abs());
+    }
+    assert!(largest > 100.0);
+}

@@ -8,7 +8,7 @@ pub const WORTHLESS: f64 = 0.5;
 
 /// Energies at the end of a step, all in J. They add up:
 /// `striker + structure + restoring + damping + contact_loss + error = input`, with the input
-/// ½ Ms V0² + energy of the structure at the start + weight.
+/// ½ Ms V0² + energy of the structure at the start + weight + gravity.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Energies {
     /// ½ Ms Ẋs²
@@ -25,14 +25,17 @@ pub struct Energies {
     pub indentation: f64,
     /// Work of the striker's weight, Ms g (Xs − Xs₀), an input if it falls \[J\].
     pub weight: f64,
+    /// Work of the weights on the floors of a frame, an input too \[J\].
+    pub gravity: f64,
     /// The remainder of the input: the integration error.
     pub error: f64,
 }
 
 impl Energies {
-    /// What is missing of the input \[J\]: the energy of the striker at the start, the work of its weight, and that of the loads.
+    /// What is missing of the input \[J\]: the energy of the striker at the start, the work of its weight, that of the loads and
+    /// that of the weights on the floors.
     pub(super) fn missing(&self, striker_at_start: f64, loads: f64) -> f64 {
-        striker_at_start + self.weight + loads
+        striker_at_start + self.weight + loads + self.gravity
             - (self.striker + self.structure + self.restoring + self.damping + self.contact_loss)
     }
 }

@@ -30,7 +30,7 @@ pub fn simulate<S: RestoringForce, K: Sink>(
     let stops = match until {
         None | Some(Until::Duration) => Some(false),
         Some(Until::StrikerStop) => Some(true),
-        Some(Until::Rebound) => None,
+        Some(Until::Rebound | Until::Drift(_)) => None,
     };
     let start = solver.state();
     match (input.law, stops.filter(|_| exact)) {
@@ -136,6 +136,7 @@ impl End {
             velocity: motion.velocity,
             acceleration: motion.acceleration,
             restoring_force: motion.force,
+            gravity_force: 0.0,
             force_at_computed: motion.force,
             load: 0.0,
             storey_stiffness: stiffness,
@@ -144,6 +145,7 @@ impl End {
                 restoring: work.restoring,
                 damping: damped.work,
                 input: 0.0,
+                gravity: 0.0,
                 error: 0.0 - (kinetic + work.restoring + damped.work),
             },
         };
@@ -166,6 +168,7 @@ impl End {
             contact_loss: work.contact_loss,
             indentation: indented.work,
             weight: fallen.work,
+            gravity: 0.0,
             error: 0.0,
         };
         energies.error = energies.missing(input.striker_energy(), 0.0);

@@ -103,6 +103,7 @@ impl ImpactInput {
             mass: self.mass,
             damping: self.damping,
             stiffness: self.stiffness,
+            gravity: None,
         }
     }
 

@@ -15,6 +15,7 @@ use crate::integrator::state::State;
 use crate::integrator::step_form::{StepContact, StepForm};
 use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
+use crate::structure::drifts_to;
 use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
 use crate::structure::substructures::StoreyReadings;
@@ -45,8 +46,10 @@ pub type FrameImpactSolver = ImpactSolver<Vec<f64>>;
 /// Bounds of the displacement and velocity that the energy of a structure still allows at its struck degree of freedom.
 #[derive(Clone, Debug)]
 struct Reach<V: Vector> {
+    /// K − G
     stiffness: <V::Matrix as Matrix>::Factor,
-    /// e_sᵀK⁻¹e_s \[m/N\]
+    gravity: Option<V::Matrix>,
+    /// e_sᵀ(K − G)⁻¹e_s \[m/N\]
     compliance: f64,
     /// e_sᵀM⁻¹e_s \[1/kg\]
     mobility: f64,
@@ -61,28 +64,44 @@ impl<V: Vector> Reach<V> {
             factor.solve(&mut unit);
             unit.as_slice()[struck]
         };
-        let stiffness = Factor::of(&form.matrices.stiffness).ok()?;
+        let mut net = form.matrices.stiffness.clone();
+        if let Some(gravity) = &form.matrices.gravity {
+            net.add_scaled(gravity, -1.0);
+        }
+        let stiffness = Factor::of(&net).ok()?;
         let (compliance, mobility) = (unit(&stiffness), unit(form.mass_factor()));
         Some(Self {
             stiffness,
+            gravity: form.matrices.gravity.clone(),
             compliance,
             mobility,
         })
     }
 
-    /// ½RᵀK⁻¹R: elastic energy of a structure under these forces \[N\], in \[J\].
-    fn stored(&self, force: &V) -> f64 {
+    /// R, or R − G X with weights \[N\].
+    fn net(&self, state: &State<V>) -> V {
+        let mut net = state.restoring_force.clone();
+        if self.gravity.is_some() {
+            net.update([&state.gravity_force], |force, [gravity]| force - gravity);
+        }
+        net
+    }
+
+    /// ½RᵀK⁻¹R: elastic energy of a structure in this state \[J\].
+    fn stored(&self, state: &State<V>) -> f64 {
+        let force = self.net(state);
         let mut bent = force.clone();
         self.stiffness.solve(&mut bent);
-        0.5 * bent.dot(force)
+        0.5 * bent.dot(&force)
     }
 
     /// Largest speed \[m/s\] and least displacement \[m\] of the struck degree of freedom from here on, as far as the structure is
     /// elastic.
     fn bounds(&self, state: &State<V>, struck: usize) -> (f64, f64) {
-        let mut bent = state.restoring_force.clone();
+        let force = self.net(state);
+        let mut bent = force.clone();
         self.stiffness.solve(&mut bent);
-        let stored = bent.dot(&state.restoring_force).max(0.0);
+        let stored = bent.dot(&force).max(0.0);
         let twice_energy = 2.0 * state.energies.kinetic + stored;
         let rest = state.displacement.as_slice()[struck] - bent.as_slice()[struck];
         (
@@ -161,9 +180,9 @@ impl<V: HasTangents> ImpactSolver<V> {
         let law = AnyContact::new(law, input.integrator, approaching, &striker)?;
         structure.form.is_divided = matches!(law, AnyContact::Divided(_));
         let striker_energy = 0.5 * mass * velocity * velocity;
-        let stored = reach.as_ref().map_or(0.0, |reach| {
-            reach.stored(&structure.state().restoring_force)
-        });
+        let stored = reach
+            .as_ref()
+            .map_or(0.0, |reach| reach.stored(structure.state()));
         let first_input = striker_energy + stored;
         let advance = Advance {
             striker_displacement: structure.state().displacement.as_slice()[struck] - gap,
@@ -351,10 +370,14 @@ impl<V: HasTangents> ImpactSolver<V> {
             contact_loss: before.contact_loss + advance.contact_loss,
             indentation: before.indentation + advance.indentation_work,
             weight: before.weight + striker.mass * striker.gravity * fallen,
+            gravity: balance.gravity,
             error: 0.0,
         };
         energies.error = energies.missing(self.striker_energy, balance.input);
-        let input = self.state.input.max(self.first_input + energies.weight);
+        let input = self
+            .state
+            .input
+            .max(self.first_input + energies.weight + energies.gravity);
         let contacts = self.state.contacts + u64::from(advance.contacts);
         let stiffness = stiffness_at(structure, struck);
         self.state = ImpactState {
@@ -385,6 +408,12 @@ impl<V: HasTangents> ImpactSolver<V> {
     #[must_use]
     pub const fn state(&self) -> &ImpactState {
         &self.state
+    }
+
+    /// G X at these displacements \[m\], in \[N\]; empty without weights.
+    #[must_use]
+    pub fn gravity_force(&self, displacement: V::View<'_>) -> Vec<f64> {
+        self.structure.gravity_force(displacement)
     }
 
     /// Index of the struck degree of freedom.
@@ -424,7 +453,11 @@ impl<V: HasTangents> ImpactSolver<V> {
     /// Whether the run has ended before its duration.
     #[must_use]
     pub fn over(&self, until: Until) -> bool {
-        until.reached(|| self.finished(), || self.rebounded())
+        until.reached(
+            || self.finished(),
+            || self.rebounded(),
+            |drift| drifts_to(self.structure.state().displacement.as_slice(), drift),
+        )
     }
 
     /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.

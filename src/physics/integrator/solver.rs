@@ -15,6 +15,8 @@ pub struct Solver<V: HasTangents> {
     pub(crate) form: StepForm<V>,
     tangents: Option<V::Tangents>,
     modification: Option<V::Matrix>,
+    /// R − G X at the computed displacement \[N\]; None without weights.
+    net: Option<V>,
     state: State<V>,
     /// The end of the step in progress; it becomes the state.
     next: Motion<V>,
@@ -31,7 +33,7 @@ pub struct Solver<V: HasTangents> {
 pub type FrameSolver = Solver<Vec<f64>>;
 
 impl<V: HasTangents> Solver<V> {
-    /// M Ẍ₀ = F₀ − R₀.
+    /// M Ẍ₀ = F₀ − R₀ + G X₀.
     ///
     /// # Errors
     /// If vectors and matrices are not of one order, or no acceleration follows from them.
@@ -72,8 +74,21 @@ impl<V: HasTangents> Solver<V> {
         <V::Matrix as Matrix>::Factor::of(&matrices.mass).map_err(FrameError::Mass)?;
         let form = StepForm::new(matrices, operator, input.integrator, input.time_step)
             .map_err(FrameError::Step)?;
+        let net = matrices.gravity.as_ref().map(|gravity| {
+            let mut net = force.clone();
+            gravity.mul_add(-1.0, &displacement, &mut net);
+            net
+        });
+        let mut gravity_force = V::default();
+        if let Some(gravity) = &matrices.gravity {
+            gravity_force = zero();
+            gravity.product(&displacement, &mut gravity_force);
+        }
         let mut acceleration = zero();
-        acceleration.update([&load, &force], |_, [load, force]| load - force);
+        acceleration.update(
+            [&load, net.as_ref().unwrap_or(&force)],
+            |_, [load, force]| load - force,
+        );
         form.mass_factor().solve(&mut acceleration);
         Ok(Self {
             form,
@@ -89,6 +104,7 @@ impl<V: HasTangents> Solver<V> {
                 velocity: zero(),
                 acceleration,
                 restoring_force: force.clone(),
+                gravity_force,
                 force_at_computed: force,
                 load,
                 storey_stiffness: tangents
@@ -98,6 +114,7 @@ impl<V: HasTangents> Solver<V> {
                 energies: FrameEnergies::default(),
             },
             tangents,
+            net,
             next: Motion::at_rest(order),
             load_end: zero(),
             predicted: false,
@@ -110,6 +127,18 @@ impl<V: HasTangents> Solver<V> {
     /// Measured displacement before the first step \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.state.measured_displacement.set(measured_displacement);
+    }
+
+    /// G X at these displacements \[m\], in \[N\]; empty without weights.
+    #[must_use]
+    pub fn gravity_force(&self, displacement: V::View<'_>) -> Vec<f64> {
+        let Some(gravity) = &self.form.matrices.gravity else {
+            return Vec::new();
+        };
+        let (mut at, mut force) = (V::default(), V::zero(gravity.rows()));
+        at.set(displacement);
+        gravity.product(&at, &mut force);
+        force.as_slice().to_vec()
     }
 
     /// Displacements to command in this step \[m\], under the loads at its end \[N\]. Called again before `complete`, it returns the
@@ -152,15 +181,17 @@ impl<V: HasTangents> Solver<V> {
                 form,
                 tangents,
                 state,
+                net,
                 next,
                 load_end,
                 ..
             } = self;
+            let from = state.moment(net.as_ref());
             if form.integrator == Integrator::Tangent {
                 let tangents = tangents.as_ref();
-                V::predict(form, tangents, &state.moment(), load_end, next, contact);
+                V::predict(form, tangents, &from, load_end, next, contact);
             } else {
-                form.impose(&state.moment(), next);
+                form.impose(&from, next);
             }
         }
         self.next.displacement.view()
@@ -178,7 +209,7 @@ impl<V: HasTangents> Solver<V> {
             self.load_end.set(load_end);
             self.damping_work = Some(pass(
                 &self.form,
-                self.state.moment(),
+                self.state.moment(self.net.as_ref()),
                 &self.load_end,
                 &mut self.next,
             ));
@@ -217,6 +248,7 @@ impl<V: HasTangents> Solver<V> {
             form,
             tangents,
             modification,
+            net,
             state,
             next,
             load_end,
@@ -241,10 +273,33 @@ impl<V: HasTangents> Solver<V> {
             }
             None => &state.restoring_force,
         };
-        if form.integrator == Integrator::Tangent {
-            next.force.set(effective_force.view());
-        } else {
-            form.correct(&state.moment(), load_end, effective_force, next, contact);
+        let is_tangent = form.integrator == Integrator::Tangent;
+        match net {
+            None if is_tangent => next.force.set(effective_force.view()),
+            None => form.correct(
+                &state.moment(None),
+                load_end,
+                effective_force,
+                next,
+                contact,
+            ),
+            Some(net) => {
+                let mut read = effective_force.clone();
+                if let Some(gravity) = &form.matrices.gravity {
+                    gravity.product(&state.target, &mut state.gravity_force);
+                }
+                read.update([&state.gravity_force], |read, [gravity]| read - gravity);
+                if is_tangent {
+                    net.set(read.view());
+                    next.force.set(effective_force.view());
+                } else {
+                    form.correct(&state.moment(Some(net)), load_end, &read, next, contact);
+                    net.set(next.force.view());
+                    if let Some(gravity) = &form.matrices.gravity {
+                        gravity.mul_add(1.0, &next.displacement, &mut next.force);
+                    }
+                }
+            }
         }
         if let Some(tangents) = tangents
             && tangents.take(&state.measured_displacement, &state.restoring_force)
@@ -370,6 +425,7 @@ mod tests {
             mass: MASS,
             damping,
             stiffness: STIFFNESS,
+            gravity: None,
         };
         let input = SolverInput {
             matrices: &matrices,

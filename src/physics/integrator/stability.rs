@@ -47,6 +47,7 @@ impl Met {
             mass,
             damping,
             stiffness,
+            ..
         } = *structure;
         let beyond = stiffness - operator_stiffness;
         Self {
@@ -182,6 +183,7 @@ mod tests {
                     mass: 1.0,
                     damping: 0.0,
                     stiffness: omega * omega,
+                    gravity: None,
                 },
                 0.0,
             ),
@@ -202,7 +204,8 @@ mod tests {
                     &Matrices {
                         mass: 1.0,
                         damping: 0.0,
-                        stiffness: 400.0
+                        stiffness: 400.0,
+                        gravity: None,
                     },
                     300.0
                 )

@@ -2,6 +2,7 @@
 
 use super::step_form::Moment;
 use crate::structure::FrameEnergies;
+use crate::structure::matrix::Vector;
 
 /// The end of a step; step 0 is the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct State<V> {
     pub acceleration: V,
     /// Measured R \[N\].
     pub restoring_force: V,
+    /// G X at the target \[N\]: the forces of P-Δ, which oppose R; empty without weights.
+    pub gravity_force: V,
     /// Force of the recursion at X \[N\]: the reading, as corrected by the I-modification and α-OS.
     pub force_at_computed: V,
     /// F at the end of the step \[N\].
@@ -33,14 +36,28 @@ pub struct State<V> {
 /// The state of a frame, one entry per degree of freedom.
 pub type FrameState = State<Vec<f64>>;
 
+impl<V: Vector> State<V> {
+    /// Σ(R − G X) \[N\]: the measured base shear, net of P-Δ.
+    #[must_use]
+    pub fn base_shear(&self) -> f64 {
+        let sum = |forces: &V| forces.as_slice().iter().sum::<f64>();
+        sum(&self.restoring_force) - sum(&self.gravity_force)
+    }
+}
+
 impl<V> State<V> {
+    /// `net`: R − G X at the computed displacement, with weights \[N\].
     #[inline]
-    pub(crate) const fn moment(&self) -> Moment<'_, V> {
+    pub(crate) const fn moment<'a>(&'a self, net: Option<&'a V>) -> Moment<'a, V> {
+        let force = match net {
+            Some(net) => net,
+            None => &self.force_at_computed,
+        };
         Moment {
             displacement: &self.displacement,
             velocity: &self.velocity,
             acceleration: &self.acceleration,
-            force: &self.force_at_computed,
+            force,
             load: &self.load,
         }
     }

@@ -1,6 +1,9 @@
 //! One step of a structure under each integrator (coefficients in [`super::coefficients`]), for one degree of freedom and for many. In:
 //! the state at a step's start, loads, the measured force. Out: the position to impose, the end of the step. It keeps no history.
 //!
+//! Weights on the floors add −G X to the restoring force, and −G to every stiffness below: R is R − G X, `K_t` is `K_t` − G, `K_I` is
+//! `K_I` − G. A tangent or secant is measured without G, and has its bounds before G is subtracted.
+//!
 //! A contact force F acts on one degree of freedom s. Every end velocity there is linear in it, Ẋ₁ = `v_free` + w F, with
 //! `v_free` that of the step without contact, and a contact law decides on F from those two. In the tangent form
 //!
@@ -39,7 +42,7 @@ pub(crate) struct StepForm<V: Vector> {
     pub time_step: f64,
     coefficients: Coefficients,
     shares: Shares,
-    /// `K_t` of the tangent form, `K_I` of α-OS; not used by explicit Newmark.
+    /// `K_t` − G of the tangent form, `K_I` − G of α-OS; not used by explicit Newmark.
     operator: V::Matrix,
     effective: V::Matrix,
     factor: Factored<V>,
@@ -91,7 +94,7 @@ pub(crate) struct Moment<'a, V> {
     pub displacement: &'a V,
     pub velocity: &'a V,
     pub acceleration: &'a V,
-    /// At the computed displacement.
+    /// R − G X at the computed displacement.
     pub force: &'a V,
     pub load: &'a V,
 }
@@ -147,16 +150,26 @@ impl<V: Vector> StepForm<V> {
         time_step: f64,
     ) -> Result<Self, NotPositiveDefinite> {
         let order = matrices.mass.rows();
+        let mut net = operator.clone();
+        if let Some(gravity) = &matrices.gravity {
+            net.add_scaled(gravity, -1.0);
+            if integrator == Integrator::Tangent {
+                // K_t ≥ 0, so that M̂ stays positive definite if M − ¼Δt²G is.
+                let mut least = matrices.mass.clone();
+                least.add_scaled(gravity, -0.25 * time_step * time_step);
+                <V::Matrix as Matrix>::Factor::of(&least)?;
+            }
+        }
         let mut effective = V::Matrix::zero_of(order);
         let coefficients = Coefficients::of(integrator);
         let shares = Shares::new(&coefficients, time_step);
-        shares.compose(matrices, operator, &mut effective);
+        shares.compose(matrices, &net, &mut effective);
         Ok(Self {
             integrator,
             time_step,
             coefficients,
             shares,
-            operator: operator.clone(),
+            operator: net,
             factor: Factor::of(&effective)?,
             mass_factor: Factor::of(&matrices.mass)?,
             effective,
@@ -169,13 +182,16 @@ impl<V: Vector> StepForm<V> {
         })
     }
 
-    /// Sets a different `K_t`, written by `stiffness`. M̂ stays positive definite: storeys are not negative.
+    /// Sets a different `K_t`, written by `stiffness`. M̂ stays positive definite: no storey of `K_t` is negative.
     #[inline]
     pub fn set_tangent(
         &mut self,
         stiffness: impl FnOnce(&mut V::Matrix),
     ) -> Result<(), NotPositiveDefinite> {
         stiffness(&mut self.operator);
+        if let Some(gravity) = &self.matrices.gravity {
+            self.operator.add_scaled(gravity, -1.0);
+        }
         self.shares
             .compose(&self.matrices, &self.operator, &mut self.effective);
         self.factor.replace(&self.effective)?;
@@ -434,7 +450,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// `K_t` \[N/m\].
+    /// `K_t` − G \[N/m\].
     pub const fn operator(&self) -> &V::Matrix {
         &self.operator
     }

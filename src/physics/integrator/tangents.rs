@@ -138,13 +138,22 @@ impl HasTangents for Vec<f64> {
             return form.predict(from, load_end, to, contact);
         }
         let constant = || Secant::of(form.operator().at(0, 0));
-        let Matrices { mass, damping, .. } = &form.matrices;
+        let Matrices {
+            mass,
+            damping,
+            gravity,
+            ..
+        } = &form.matrices;
+        let net = |secant: Secant| match gravity {
+            Some(gravity) => secant.less(gravity.at(0, 0)),
+            None => secant,
+        };
         let point = Point {
             body: Body::new([mass.at(0, 0), damping.at(0, 0)], form.time_step),
             damped: form.damping().is_some(),
             secant: tangents
                 .and_then(|tangents| tangents.only.as_ref())
-                .map_or_else(constant, |only| only.secant),
+                .map_or_else(constant, |only| net(only.secant)),
             motion: [from.displacement[0], from.velocity[0], from.acceleration[0]],
             unbalanced: load_end[0] - from.force[0],
         };

@@ -344,7 +344,7 @@ impl Peaks {
         drifts(&state.velocity, &mut self.velocity);
         widen(&mut self.ends.max_displacement, &state.displacement);
         widen(&mut self.ends.max_drift, &self.ends.final_drift);
-        let shear = state.restoring_force.iter().sum::<f64>();
+        let shear = state.base_shear();
         self.ends.max_base_shear = self.ends.max_base_shear.max(shear.abs());
         self.displacement.take(
             state

@@ -77,6 +77,7 @@ fn frame(storeys: usize, mass: f64, stiffness: f64) -> FrameMatrices {
         mass: SymmetricBand::diagonal(&vec![mass; storeys]),
         damping: SymmetricBand::zero(storeys, 0),
         stiffness: storey_stiffness(&vec![stiffness; storeys]),
+        gravity: None,
     }
 }
 

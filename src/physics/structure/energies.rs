@@ -7,7 +7,7 @@ use super::matrix::{Matrix as _, Vector};
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
 /// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground).
-/// They add up: `kinetic + restoring + damping + error = input`.
+/// They add up: `kinetic + restoring + damping + error = input + gravity`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FrameEnergies {
     /// ½ ẊᵀMẊ
@@ -18,6 +18,8 @@ pub struct FrameEnergies {
     pub damping: f64,
     /// ∫ FᵀẊ dt; under a ground motion −∫ ẊᵀMι `ü_g` dt.
     pub input: f64,
+    /// ½ XᵀGX, minus that of the start: work of the weights, which sink as the storeys drift.
+    pub gravity: f64,
     /// The rest of the input: the integration error, and under α-OS with α < 0 the numerical damping. With the
     /// tangent form it is rounding as long as the specimen is linear.
     pub error: f64,
@@ -57,9 +59,16 @@ impl FrameEnergies {
             restoring: self.restoring + 0.5 * restoring,
             damping: self.damping + damping_work,
             input: self.input + time_step * (0.25 * input),
+            gravity: self.gravity,
             error: 0.0,
         };
-        next.error = next.input - (next.kinetic + next.restoring + next.damping);
+        if let Some(gravity) = &matrices.gravity {
+            first.update(ends.displacement, |_, [before, after]| before + after);
+            gravity.product(first, second);
+            first.update(ends.displacement, |_, [before, after]| after - before);
+            next.gravity += 0.5 * first.dot(second);
+        }
+        next.error = next.input + next.gravity - (next.kinetic + next.restoring + next.damping);
         next
     }
 }

@@ -1,6 +1,7 @@
 //! Frames of storeys: many degrees of freedom, one for each floor, counted from the ground up. A frame has a matrix of mass and one of
 //! stiffness. It computes no motion.
 
+use super::shear_building::shears;
 use crate::specimen::Behaviour;
 
 /// A structure of several floors.
@@ -31,6 +32,8 @@ pub struct Storey {
     pub stiffness_uncertainty: f64,
     /// \[m\]
     pub height: Option<f64>,
+    /// Weight of its floor \[N\]; 0 if none is stated.
+    pub gravity: f64,
     /// Restoring-force model: storey shear against storey drift.
     pub behaviour: Behaviour,
     /// Damping on the load cells of a simulated rig, per drift velocity of the storey \[N·s/m\].
@@ -65,6 +68,7 @@ impl Storey {
             stiffness,
             stiffness_uncertainty,
             height: None,
+            gravity: 0.0,
             behaviour,
             damping: 0.0,
             coulomb: 0.0,
@@ -109,6 +113,27 @@ impl Frame {
             files: None,
             matrix_uncertainty: [0.0; 2],
         }
+    }
+
+    /// P of each storey \[N\]: the weight of its floor and of all floors above; empty if no floor has a weight.
+    #[must_use]
+    pub fn axial_loads(&self) -> Vec<f64> {
+        if self.storeys.iter().all(|storey| storey.gravity == 0.0) {
+            return Vec::new();
+        }
+        let weights: Vec<f64> = self.storeys.iter().map(|storey| storey.gravity).collect();
+        let mut loads = vec![0.0; weights.len()];
+        shears(&weights, &mut loads);
+        loads
+    }
+
+    /// P/h of each storey \[N/m\]: its shear by P-Δ per drift, against its restoring force; empty if no floor has a weight.
+    #[must_use]
+    pub fn gravity_stiffness(&self) -> Vec<f64> {
+        let storeys = self.axial_loads().into_iter().zip(&self.storeys);
+        storeys
+            .map(|(load, storey)| storey.height.map_or(0.0, |height| load / height))
+            .collect()
     }
 
     /// Floors.

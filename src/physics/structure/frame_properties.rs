@@ -17,8 +17,9 @@ use crate::structure::{
 #[derive(Clone, Debug)]
 pub struct FrameProperties {
     pub matrices: FrameMatrices,
-    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey.
+    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings.
     pub operator: SymmetricBand,
+    /// Of K − G.
     pub modes: Modes,
 }
 
@@ -39,8 +40,14 @@ impl FrameProperties {
     pub fn of(frame: &Frame, damping: &Damping) -> Result<Self, NoProperties> {
         let mass = SymmetricBand::from_dense(&frame.mass)?;
         let stiffness = SymmetricBand::from_dense(&frame.stiffness)?;
-        let modes = modes(&mass, &stiffness)?;
-        let damping = damping_matrix(damping, &mass, &stiffness, &modes)?;
+        let unloaded = modes(&mass, &stiffness)?;
+        let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
+        let weights = frame.gravity_stiffness();
+        let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
+        let modes = match &gravity {
+            Some(gravity) => modes(&mass, &net(&stiffness, Some(gravity)))?,
+            None => unloaded,
+        };
         let computes = frame
             .storeys
             .iter()
@@ -56,6 +63,7 @@ impl FrameProperties {
                 mass,
                 damping,
                 stiffness,
+                gravity,
             },
             operator,
             modes,
@@ -91,17 +99,16 @@ impl FrameProperties {
         };
         let order = self.matrices.order();
         let mut mass = SymmetricBand::zero(order + 1, self.matrices.mass.half_bandwidth());
-        let mut stiffness = SymmetricBand::zero(
-            order + 1,
-            self.matrices.stiffness.half_bandwidth().max(order - struck),
-        );
+        let own = net(&self.matrices.stiffness, self.matrices.gravity.as_ref());
+        let mut stiffness =
+            SymmetricBand::zero(order + 1, own.half_bandwidth().max(order - struck));
         for row in 0..order {
             for column in 0..=row {
                 if row - column <= self.matrices.mass.half_bandwidth() {
                     mass.set(row, column, self.matrices.mass.entry(row, column));
                 }
-                if row - column <= self.matrices.stiffness.half_bandwidth() {
-                    stiffness.set(row, column, self.matrices.stiffness.entry(row, column));
+                if row - column <= own.half_bandwidth() {
+                    stiffness.set(row, column, own.entry(row, column));
                 }
             }
         }
@@ -131,7 +138,8 @@ impl FrameProperties {
         integrator: Integrator,
         virtual_specimen: Option<&Frame>,
     ) -> f64 {
-        let own = self.highest(&self.operator);
+        let net = |stiffness| net(stiffness, self.matrices.gravity.as_ref());
+        let own = self.highest(&net(&self.operator));
         let mut met = Met {
             highest: own,
             shortfall: 0.0,
@@ -147,10 +155,16 @@ impl FrameProperties {
                     largest.unwrap_or(storey.operator_stiffness())
                 })
                 .collect();
-            met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
+            met.highest = own.max(self.highest(&net(&storey_stiffness(&behaves))));
             let storeys = || frame.storeys.iter().zip(&behaves);
+            // G is in both stiffnesses, and cancels in their difference.
+            let mut weights = frame.gravity_stiffness();
+            weights.resize(frame.storeys.len(), 0.0);
             met.share = storeys()
-                .map(|(storey, behaves)| 1.0 - storey.operator_stiffness() / behaves)
+                .zip(weights)
+                .map(|((storey, behaves), g)| {
+                    1.0 - (storey.operator_stiffness() - g) / (behaves - g)
+                })
                 .fold(0.0, f64::max);
             if met.share > 0.0 {
                 // The small stiffness added to softer storeys makes the bound slightly low, never high.
@@ -170,4 +184,13 @@ impl FrameProperties {
             (std::f64::consts::TAU / modes.shortest_period()).powi(2)
         })
     }
+}
+
+/// K − G.
+fn net(stiffness: &SymmetricBand, gravity: Option<&SymmetricBand>) -> SymmetricBand {
+    let mut net = stiffness.clone();
+    if let Some(gravity) = gravity {
+        net.add(gravity, -1.0);
+    }
+    net
 }

@@ -1,14 +1,16 @@
-//! Mass, damping and stiffness of a structure. In: numbers, or bands. Out: loads of a ground motion. It integrates nothing.
+//! Mass, damping, stiffness and geometric stiffness of a structure. In: numbers, or bands. Out: loads of a ground motion. It integrates nothing.
 
 use super::matrix::{SymmetricBand, Vector};
 
-/// M, C and K of a structure, of one order \[kg\], \[N·s/m\], \[N/m\].
+/// M, C, K and G of a structure, of one order \[kg\], \[N·s/m\], \[N/m\]: M Ẍ + C Ẋ + R(X) − G X = F.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrices<V: Vector> {
     pub mass: V::Matrix,
     pub damping: V::Matrix,
     /// The initial one.
     pub stiffness: V::Matrix,
+    /// G, the geometric stiffness of the weights; None without weights.
+    pub gravity: Option<V::Matrix>,
 }
 
 /// Those of a frame.

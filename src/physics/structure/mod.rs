@@ -25,6 +25,6 @@ pub use energies::FrameEnergies;
 pub use matrices::{FrameMatrices, Matrices};
 pub use matrix::{BandFactor, NotPositiveDefinite, RowsError, SymmetricBand};
 pub use modes::{Modes, ModesError, modes};
-pub(crate) use shear_building::set_storeys;
 pub use shear_building::{drifts, floor_forces, shears, storey_stiffness, storeys_of, widen};
+pub(crate) use shear_building::{drifts_to, set_storeys};
 pub use unloading::{Loaded, Unloading, UnloadingPath};

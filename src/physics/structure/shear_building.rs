@@ -67,6 +67,15 @@ pub fn drifts(displacement: &[f64], drift: &mut [f64]) {
     }
 }
 
+/// Whether the drift of a storey is at least `limit` \[m\] in absolute value.
+#[must_use]
+pub(crate) fn drifts_to(displacement: &[f64], limit: f64) -> bool {
+    let mut below = 0.0;
+    displacement
+        .iter()
+        .any(|floor| (floor - std::mem::replace(&mut below, *floor)).abs() >= limit)
+}
+
 /// Shear of each storey \[N\]: the sum of the restoring forces of the floors that it carries.
 pub fn shears(restoring_force: &[f64], shear: &mut [f64]) {
     let mut above = 0.0;

@@ -402,6 +402,7 @@ impl Sweep {
                         mass,
                         damping,
                         stiffness: stiffness.value,
+                        gravity: None,
                     })
                 };
                 let ratio = ratio_of(fit.slope);

@@ -287,11 +287,18 @@ impl StruckSummary {
         }
     }
 
-    /// Adds a reading on the way to a target that was not reached: the floors with the struck one, by this time \[s\].
-    pub(crate) fn moved_to(&mut self, struck: usize, reading: &Reading, time: f64) {
+    /// Adds a reading on the way to a target that was not reached: the floors with the struck one, by this time \[s\]. `gravity_force`
+    /// is G X there \[N\].
+    pub(crate) fn moved_to(
+        &mut self,
+        struck: usize,
+        reading: &Reading,
+        gravity_force: &[f64],
+        time: f64,
+    ) {
         self.impact.moved_to(reading.displacement[struck], time);
         if let Some(floors) = &mut self.floors {
-            floors.moved_to(reading);
+            floors.moved_to(reading, gravity_force);
         }
     }
 
@@ -364,8 +371,7 @@ impl FloorSummary {
             structure.displacement.as_slice(),
         );
         widen(&mut self.max_drift, &self.drift);
-        let force = structure.restoring_force.as_slice();
-        let base_shear = force.iter().sum::<f64>().abs();
+        let base_shear = structure.base_shear().abs();
         self.base_shear.push(base_shear);
         self.shear_force.push(base_shear);
         match state.state {
@@ -376,11 +382,12 @@ impl FloorSummary {
         self.striker_velocity = state.striker_velocity;
     }
 
-    fn moved_to(&mut self, reading: &Reading) {
+    fn moved_to(&mut self, reading: &Reading, gravity_force: &[f64]) {
         widen(&mut self.floor_displacement, &reading.displacement);
         widen(&mut self.max_drift, &drift_of(&reading.displacement));
+        let sum = |forces: &[f64]| forces.iter().sum::<f64>();
         self.base_shear
-            .push(reading.force.iter().sum::<f64>().abs());
+            .push((sum(&reading.force) - sum(gravity_force)).abs());
     }
 
     /// What was still growing at this last step.

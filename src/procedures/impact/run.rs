@@ -6,6 +6,7 @@
 use super::results::{StruckSummary, observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::uncertainty::{RecordedRun, UncertaintyInputs};
+use crate::procedures::shake::results::{drifted_to, observe_drift};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
@@ -109,6 +110,12 @@ pub(crate) fn strike(
     }
     if let (Some(impact), None) = (&impact, &stop) {
         observe(impact, plan.until, &input.law, session);
+        let floors = summary.as_ref().and_then(StruckSummary::floors);
+        if let (Until::Drift(limit), Some(floors)) = (plan.until, floors)
+            && let Some(storey) = drifted_to(&floors.drift, limit)
+        {
+            observe_drift(storey, limit, session);
+        }
     }
     let mut results = results(summary.as_ref(), &tracking, &history);
     if let (Some(summary), None) = (impact, &stop) {
@@ -360,11 +367,16 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             ..*last
         };
         self.steps.push(step);
-        self.summary.moved_to(struck, reading, time);
+        let gravity_force = self.solver.gravity_force(V::view_of(&reading.displacement));
+        self.summary.moved_to(struck, reading, &gravity_force, time);
         if let Some(last) = self.floors.last() {
-            let floors = last
-                .floors
-                .cut_off(time, target, &reading.displacement, &reading.force);
+            let floors = last.floors.cut_off(
+                time,
+                target,
+                &reading.displacement,
+                &reading.force,
+                gravity_force,
+            );
             let storey_energy = last.storey_energy.clone();
             self.floors.push(FloorStep {
                 floors,

@@ -128,6 +128,7 @@ impl Setting {
             mass,
             damping,
             stiffness,
+            gravity: None,
         };
         let limit = longest_stable_step(plan.stepping.integrator, &Met::one(&matrices, stiffness));
         stable(&plan.stepping, time_step, limit)?;
@@ -174,6 +175,7 @@ impl Setting {
                 mass: frame_steps.properties.struck_mass(target.storey),
                 damping: 0.0,
                 stiffness,
+                gravity: None,
             },
             operator_stiffness: stiffness,
             law,

@@ -38,6 +38,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let stepping = stepping::check::stepping(checker, block, Some(&Contact::Rigid), 5.0);
     let scale = checker.quantity(block, schema::SCALE.name);
     let duration = checker.optional(block, methods::DURATION.name);
+    let until = until(checker, block);
     let specimen = specimen?;
     if !frame::is_frame(checker, specimen) {
         let tested = &checker.scope.blocks[specimen];
@@ -60,7 +61,21 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         stepping: stepping?,
         scale: scale?,
         duration: duration?,
+        until: Some(until?).filter(|drift| drift.is_finite()),
     }))
+}
+
+/// The drift that ends the run \[m\]; infinite if the run has its whole duration.
+fn until(checker: &mut Checker, block: usize) -> Option<f64> {
+    let Some((entry, _)) = checker.field(block, schema::UNTIL.name) else {
+        return Some(f64::INFINITY);
+    };
+    let context = checker.context_of(block, entry);
+    let chosen = checker.choice(block, schema::UNTIL.name)?;
+    if chosen.variant.name != methods::DRIFT_REACHED.name {
+        return Some(f64::INFINITY);
+    }
+    checker.constant_argument(&chosen, methods::REACHED.name, context)
 }
 
 /// One number is for Rayleigh damping; a list has one ratio for each mode.

@@ -12,7 +12,7 @@ pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static>
         what: "shake",
         ends: "ends at its last step, possibly in motion",
         help: "unload in between: `unload rest { }`; or let the frame come to rest: a longer `duration`, with a `damping_ratio`",
-        rests: comes_to_rest(shake, grounds),
+        rests: shake.until.is_none() && comes_to_rest(shake, grounds),
     }
 }
 

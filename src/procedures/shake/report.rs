@@ -84,6 +84,19 @@ fn integration(
         shake.stepping.mode,
     ));
     sentences.extend(tracking::sentence(procedure));
+    sentences.extend(weights(frame_of(run, shake.specimen)));
+    sentences.extend(
+        history
+            .drift_reached
+            .zip(shake.until)
+            .map(|(storey, drift)| {
+                format!(
+                    "The run ended when storey {} reached a drift of {}, before its duration.",
+                    storey + 1,
+                    number::stated(drift, Dimension::LENGTH)
+                )
+            }),
+    );
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples; each step uses its value at the end of the step: {}.",
@@ -91,6 +104,15 @@ fn integration(
         ));
     }
     sentences
+}
+
+/// How gravity is computed; None without weights.
+pub(crate) fn weights(frame: Option<&Frame>) -> Option<String> {
+    let weighs = !frame?.axial_loads().is_empty();
+    weighs.then(|| {
+        "P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
+            .to_owned()
+    })
 }
 
 /// The frame that a procedure tests.
@@ -184,6 +206,8 @@ pub(crate) fn storey_table<S: Floors>(
     displacement: ResultKind,
 ) -> Block {
     let shear = largest(steps, S::shear);
+    let net = largest(steps, S::net_shear);
+    let weighs = steps.last().is_some_and(S::weighs);
     let whole = |values: &[f64]| {
         values
             .iter()
@@ -205,7 +229,7 @@ pub(crate) fn storey_table<S: Floors>(
             title.to_owned()
         })
     };
-    let columns = vec![
+    let mut columns = vec![
         Column::words("Storey", 1),
         with_u("Peak floor displacement", displacement),
         with_u("Peak drift", schema::MAX_DRIFT),
@@ -217,6 +241,7 @@ pub(crate) fn storey_table<S: Floors>(
             "Peak shear as read"
         }),
     ];
+    columns.extend(weighs.then(|| Column::numbers("Net of P-Δ")));
     let height = |storey: usize| {
         frame
             .and_then(|frame| frame.storeys.get(storey))
@@ -226,14 +251,19 @@ pub(crate) fn storey_table<S: Floors>(
         let ratio = height(storey)
             .zip(drift.get(storey))
             .map(|(height, drift)| percent(drift / height));
-        vec![
+        let force = |shear: &[f64]| {
+            number::text_beside(shear[storey], whole(shear), Dimension::FORCE).into()
+        };
+        let mut cells = vec![
             (storey + 1).to_string().into(),
             cell(displacement, storey),
             cell(schema::MAX_DRIFT, storey),
             ratio.unwrap_or_else(|| "—".to_owned()).into(),
             cell(schema::FINAL_DRIFT, storey),
-            number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
-        ]
+            force(&shear),
+        ];
+        cells.extend(weighs.then(|| force(&net)));
+        cells
     };
     Block::Table(Table {
         columns,
@@ -378,5 +408,11 @@ fn energy_balance(history: &ShakeHistory) -> Block {
         ("damping, ∫CẊ dX", e.damping),
         ("integration error", e.error),
     ];
-    energy::balance_table(("input, −∫Mι üg dX", e.input), &parts)
+    let weighs = history.steps.last().is_some_and(Floors::weighs);
+    let name = if weighs {
+        "input, −∫Mι üg dX plus work of gravity, ½XᵀGX"
+    } else {
+        "input, −∫Mι üg dX"
+    };
+    energy::balance_table((name, e.input + e.gravity), &parts)
 }

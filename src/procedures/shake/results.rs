@@ -2,12 +2,15 @@
 //! the schema's order. It moves nothing.
 
 use crate::procedures::stepping::tracking::TrackingSummary;
+use crate::run::session::Session;
 use psd_physics::integrator::state::FrameState;
 use psd_physics::statistics::noisy_largest::NoisyLargest;
 use psd_physics::structure::{Modes, drifts, widen};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::NamedResult;
 use psd_plan::schema::ResultKind;
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// Peaks over the computed displacements and the measured forces.
 pub(crate) struct ShakeSummary {
@@ -38,9 +41,12 @@ impl ShakeSummary {
 
     /// Adds the end of a step.
     pub(crate) fn push(&mut self, state: &FrameState) {
-        self.widen(&state.displacement, &state.restoring_force);
+        self.widen(&state.displacement, state.base_shear());
         let e = &state.energies;
-        self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
+        self.largest_energy = self
+            .largest_energy
+            .max((e.input + e.gravity).abs())
+            .max(e.kinetic);
         self.energy_error = if e.error == 0.0 {
             0.0
         } else {
@@ -49,12 +55,17 @@ impl ShakeSummary {
         self.steps = state.step;
     }
 
-    /// Adds displacements \[m\] and forces \[N\] of the floors, at the end of a step or on the way to a target that was not reached.
-    pub(crate) fn widen(&mut self, displacement: &[f64], force: &[f64]) {
+    /// Adds displacements of the floors \[m\] and the base shear \[N\], at the end of a step or on the way to a target that was not reached.
+    pub(crate) fn widen(&mut self, displacement: &[f64], base_shear: f64) {
         drifts(displacement, &mut self.drift);
         widen(&mut self.max_displacement, displacement);
         widen(&mut self.max_drift, &self.drift);
-        self.base_shear.push(force.iter().sum::<f64>().abs());
+        self.base_shear.push(base_shear.abs());
+    }
+
+    /// Drifts of the storeys at the end of the last step \[m\].
+    pub(crate) fn drift(&self) -> &[f64] {
+        &self.drift
     }
 
     /// Error of the energy balance, over the largest energy.
@@ -66,6 +77,20 @@ impl ShakeSummary {
     pub(crate) const fn largest_energy(&self) -> f64 {
         self.largest_energy
     }
+}
+
+/// The lowest storey, from 0, whose drift \[m\] ended a run at `limit` \[m\].
+pub(crate) fn drifted_to(drifts: &[f64], limit: f64) -> Option<usize> {
+    drifts.iter().position(|drift| drift.abs() >= limit)
+}
+
+/// Records that the drift of a storey, from 0, ended the run.
+pub(crate) fn observe_drift(storey: usize, limit: f64, session: &mut Session<'_>) {
+    session.remark(format!(
+        "the run ended when storey {} reached a drift of {}",
+        storey + 1,
+        stated(limit, Dimension::LENGTH)
+    ));
 }
 
 /// In the order of the reference; a result that was not reached is missing.

@@ -2,7 +2,7 @@
 //! floor. In: a frame, a ground motion, a time step, each inside its domain. Out: every step, and the results that follow from them. The
 //! steps themselves are in `steps`.
 
-use super::results::{ShakeSummary, results};
+use super::results::{ShakeSummary, drifted_to, observe_drift, results};
 use super::setting::Setting;
 use super::steps::Shaking;
 use super::uncertainty::{self, ShakeUncertainty};
@@ -45,6 +45,7 @@ pub(crate) fn perform(
         damping_ratios: properties.damping_ratios(),
         modes: Some(properties.modes.clone()),
         time_step: steps.time_step,
+        drift_reached: None,
         critical_time_step: steps.critical_time_step,
     };
     let mut shaking = Shaking {
@@ -54,6 +55,13 @@ pub(crate) fn perform(
         followed: TrackingSummary::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
+    let reached = plan
+        .until
+        .and_then(|limit| Some((limit, drifted_to(shaking.summary.drift(), limit)?)));
+    if let (Some((limit, storey)), None) = (reached, &stop) {
+        shaking.history.drift_reached = Some(storey);
+        observe_drift(storey, limit, session);
+    }
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
     let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
     if stop.is_none() {

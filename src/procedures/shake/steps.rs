@@ -1,7 +1,7 @@
 //! The steps of a frame on moving ground: the ground as a load, and every step kept. In: the setting before the first step. Out: the
 //! history and its summary. `step_loop` takes the steps on the rig; the equations are in `physics`.
 
-use super::results::ShakeSummary;
+use super::results::{ShakeSummary, drifted_to};
 use super::setting::Setting;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{Start, not_stepped};
@@ -62,6 +62,7 @@ impl Shaking<'_> {
                         solver,
                         load,
                         passed: 0,
+                        until: plan.until,
                         history,
                         summary,
                     },
@@ -90,6 +91,8 @@ struct Shaken<'a> {
     load: Vec<f64>,
     /// Samples of the ground motion that are passed.
     passed: usize,
+    /// The drift that ends the run \[m\].
+    until: Option<f64>,
     history: &'a mut ShakeHistory,
     summary: &'a mut ShakeSummary,
 }
@@ -168,17 +171,24 @@ impl Stepped for Shaken<'_> {
             return;
         };
         let time = last.floors.time + time_step;
+        let gravity_force = self.solver.gravity_force(&reading.displacement);
+        let sum = |forces: &[f64]| forces.iter().sum::<f64>();
+        let base_shear = sum(&reading.force) - sum(&gravity_force);
         let step = ShakeStep {
             step: last.step + 1,
             wall_time,
             ground_acceleration: self.setting.ground_at(self.ground, last.step + 1),
-            floors: last
-                .floors
-                .cut_off(time, target, &reading.displacement, &reading.force),
+            floors: last.floors.cut_off(
+                time,
+                target,
+                &reading.displacement,
+                &reading.force,
+                gravity_force,
+            ),
             energies: last.energies,
         };
         self.history.steps.push(step);
-        self.summary.widen(&reading.displacement, &reading.force);
+        self.summary.widen(&reading.displacement, base_shear);
     }
 
     fn is_struck(&self) -> bool {
@@ -186,6 +196,7 @@ impl Stepped for Shaken<'_> {
     }
 
     fn over(&self) -> bool {
-        false
+        let until = self.until;
+        until.is_some_and(|limit| drifted_to(self.summary.drift(), limit).is_some())
     }
 }

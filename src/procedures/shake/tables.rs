@@ -16,7 +16,9 @@ pub(crate) struct FloorRow<'a, S> {
     floors: FloorsAt<'a>,
     floor: usize,
     drift: f64,
+    /// Net of P-Δ.
     shear: f64,
+    spring_shear: f64,
 }
 
 /// An impact on a storey: the step of the striker, and that of the floors.
@@ -30,13 +32,15 @@ fn rows<'a, F: Floors + 'a, S>(
     steps: impl Iterator<Item = (&'a F, &'a S)>,
 ) -> Vec<FloorRow<'a, S>> {
     let storeys = |(floors, step): (&'a F, &'a S)| {
-        let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
-        storeys.map(move |(floor, (drift, shear))| FloorRow {
+        let shears = floors.net_shear().into_iter().zip(floors.shear());
+        let storeys = floors.drift().into_iter().zip(shears).enumerate();
+        storeys.map(move |(floor, (drift, (shear, spring_shear)))| FloorRow {
             step,
             floors: floors.at(),
             floor,
             drift,
             shear,
+            spring_shear,
         })
     };
     steps.flat_map(storeys).collect()
@@ -71,6 +75,24 @@ fn computed<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     ]
 }
 
+/// The shear of the storeys without P-Δ.
+fn spring_shear<'a, S>() -> TableColumn<FloorRow<'a, S>> {
+    Number(columns::SPRING_SHEAR, |row| row.spring_shear)
+}
+
+/// The columns of a frame; those of P-Δ only if a floor has a weight.
+fn of_frame<'a, S>(
+    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
+    rows: &[FloorRow<'a, S>],
+) -> Vec<Column> {
+    let weighs = rows
+        .first()
+        .is_some_and(|row| !row.floors.gravity_force.is_empty());
+    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
+    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
+    written(&columns, rows)
+}
+
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
 fn forces<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
@@ -101,7 +123,7 @@ pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
         .first()
         .map_or(1, |step| step.floors.computed.len());
     Table::of_steps(name, history.steps.len(), storeys, |range| {
-        written(&shake(), &rows_of(&history.steps[range]))
+        of_frame(shake(), &rows_of(&history.steps[range]))
     })
 }
 
@@ -125,6 +147,7 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<FloorRow<'a, ShakeStep>>> {
         Number(column("input_energy_j", Dimension::ENERGY), |row| {
             row.step.energies.input
         }),
+        Number(columns::GRAVITY_ENERGY, |row| row.step.energies.gravity),
         Number(columns::ENERGY_ERROR, |row| row.step.energies.error),
     ];
     joined([
@@ -132,6 +155,7 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<FloorRow<'a, ShakeStep>>> {
         positions(),
         computed(),
         forces(),
+        vec![spring_shear()],
         energies,
         tracking(),
     ])
@@ -180,9 +204,20 @@ pub(crate) fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
             row.step.impact.energies.indentation
         }),
         Number(columns::WEIGHT_WORK, |row| row.step.impact.energies.weight),
+        Number(columns::GRAVITY_ENERGY, |row| {
+            row.step.impact.energies.gravity
+        }),
         Number(columns::ENERGY_ERROR, |row| row.step.impact.energies.error),
     ];
-    joined([step, positions(), computed(), forces(), striker, tracking()])
+    joined([
+        step,
+        positions(),
+        computed(),
+        forces(),
+        vec![spring_shear()],
+        striker,
+        tracking(),
+    ])
 }
 
 /// The table of an impact on a storey.
@@ -193,7 +228,7 @@ pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<C
         .map(|(floors, impact)| StruckStep { impact, floors })
         .collect();
     let rows = rows(steps.iter().map(|step| (step.floors, step)));
-    written(&struck(), &rows)
+    of_frame(struck(), &rows)
 }
 
 /// The columns of an unloading.

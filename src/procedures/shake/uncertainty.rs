@@ -55,10 +55,10 @@ pub(crate) fn propagate(
         substructures,
     )?;
     let Steps {
-        time_step,
-        count: steps,
-        ..
+        time_step, count, ..
     } = setting.frame.steps;
+    let ended = history.drift_reached.and(history.steps.last());
+    let steps = ended.map_or(count, |last| last.step);
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let at = |step: u64| {
         acceleration_at(
@@ -71,6 +71,7 @@ pub(crate) fn propagate(
     let mut evaluate = RecordedShake {
         shake,
         accelerations,
+        steps,
         path,
         length: 0,
     };
@@ -120,6 +121,8 @@ struct RecordedShake<'a, 'run> {
     shake: ShakeUncertainty<'a, 'run>,
     /// Ground acceleration at every finest step \[m/s²\].
     accelerations: Vec<f64>,
+    /// Number of steps of the run.
+    steps: u64,
     path: FramePath,
     /// Number of values of an evaluation.
     length: usize,
@@ -197,6 +200,7 @@ impl Evaluate for RecordedShake<'_, '_> {
             matrices: properties.matrices,
             operator: properties.operator,
             computed_factors: uncertainty.computed_factors(&frame),
+            steps: self.steps,
             ..uncertainty.frame_run(&setting.frame)
         };
         Ok(ShakeInputs {

@@ -2,7 +2,7 @@
 //! event, series of a chart, a table of a report. It knows no procedure.
 
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::figures::chart::{DASH_DOT, LONG, Series, Style, palette};
+use crate::report::figures::chart::{DASH_DOT, DASHED, LONG, Series, Style, palette};
 use crate::report::number;
 use crate::report::number::percent;
 use crate::run::session::Session;
@@ -43,6 +43,15 @@ impl<S> EnergyCurve<S> {
     /// Energy of the restoring forces.
     pub(crate) const fn restoring(read: fn(&S) -> f64) -> Self {
         Self::new("restoring", read, Style::line(palette::BLUE, 2.0, LONG))
+    }
+
+    /// Work of the weights on the floors.
+    pub(crate) const fn weights(read: fn(&S) -> f64) -> Self {
+        Self::new(
+            "weights",
+            read,
+            Style::line(palette::VERMILION, 1.6, DASHED),
+        )
     }
 
     /// Energy of the dampers.

@@ -32,6 +32,8 @@ pub(crate) struct Judged {
     pub integrator: Integrator,
     /// `K_I` \[N/m\]
     pub operator_stiffness: f64,
+    /// P/h of a storey that carries weight \[N/m\]; it is neither measured nor in `K_I`.
+    pub gravity: f64,
     /// 1/M of one degree of freedom; for a storey the sum of 1/M of the floors that it joins \[1/kg\].
     pub mobility: f64,
     /// \[s\]
@@ -95,6 +97,7 @@ impl Stiffer {
         let Judged {
             integrator,
             operator_stiffness,
+            gravity,
             mobility,
             time_step,
             ..
@@ -122,9 +125,10 @@ impl Stiffer {
                     &Matrices {
                         mass: 1.0 / mobility,
                         damping: 0.0,
-                        stiffness,
+                        stiffness: stiffness - gravity,
+                        gravity: None,
                     },
-                    operator_stiffness,
+                    operator_stiffness - gravity,
                 ),
             )
         };
@@ -220,6 +224,7 @@ impl StifferSprings {
         let judged = Judged {
             integrator: plan.integrator,
             operator_stiffness: input.operator_stiffness,
+            gravity: 0.0,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
             noise: noise_of(&start.readings[0]),
@@ -249,6 +254,8 @@ impl StifferSprings {
     ) -> Self {
         let (matrices, first) = (&properties.matrices, &start.reading);
         let storeys = storeys_of(&properties.operator).unwrap_or_default();
+        let weights = matrices.gravity.as_ref().and_then(storeys_of);
+        let gravity = |storey: usize| weights.as_ref().map_or(0.0, |weights| weights[storey]);
         let nothing = || vec![0.0; storeys.len()];
         let (mut drift, mut shear) = (nothing(), nothing());
         drifts(&first.displacement, &mut drift);
@@ -258,6 +265,7 @@ impl StifferSprings {
             let judged = Judged {
                 integrator: plan.integrator,
                 operator_stiffness,
+                gravity: gravity(storey),
                 moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
@@ -301,6 +309,7 @@ mod tests {
         Judged {
             integrator,
             operator_stiffness: 300.0,
+            gravity: 0.0,
             mobility: 0.5,
             time_step: 0.1,
             noise,

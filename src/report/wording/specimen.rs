@@ -1,6 +1,7 @@
 //! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
+use crate::report::number::percent;
 use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
@@ -60,6 +61,20 @@ pub fn substructures(frame: &Frame) -> Option<String> {
     } else {
         format!("{tested}; {} computed", storeys(&computed))
     })
+}
+
+/// P/(K h) of each storey, from the ground up; None without weights on the floors.
+#[must_use]
+pub fn weights(frame: &Frame) -> Option<String> {
+    let loads = frame.axial_loads().into_iter().zip(&frame.storeys);
+    let coefficients: Vec<String> = loads
+        .map(|(load, storey)| {
+            let height = storey.height.unwrap_or(f64::INFINITY);
+            percent(load / (storey.stiffness * height))
+        })
+        .collect();
+    (!coefficients.is_empty())
+        .then(|| format!("P/(K h) = {} from the ground up", coefficients.join(", ")))
 }
 
 /// `measured storey shear`; of a frame of which a part is computed `storey shear (storey 1 tested; storeys 2, 3 computed)`.

@@ -119,6 +119,7 @@ fn base_excited_plan(time_step: f64) -> Record {
             ..every(time_step)
         },
         duration: None,
+        until: None,
     };
     let mut plan = elastic_plan(1.0, vec![ProcedureKind::Shake(shake)]);
     plan.specimens = vec![specimen];

@@ -199,14 +199,21 @@ impl<'a> DryRun<'a> {
         }
         for specimen in &self.plan.specimens {
             let frame = specimen.frame.as_ref();
+            let weights = frame.and_then(specimen_text::weights);
+            let mut rows: Vec<Vec<String>> = weights
+                .into_iter()
+                .map(|text| vec!["P-Δ".to_owned(), text])
+                .collect();
             if let Some(text) = frame.and_then(specimen_text::substructures) {
-                let rows = vec![
+                rows.extend([
                     vec!["substructures".to_owned(), text],
                     vec![
                         "assumed".to_owned(),
                         specimen_text::SUBSTRUCTURES_ASSUMED.to_owned(),
                     ],
-                ];
+                ]);
+            }
+            if !rows.is_empty() {
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }

@@ -346,6 +346,7 @@ impl Lanes {
             contact_loss: work.contact_loss,
             indentation: indented.work,
             weight: fallen.work,
+            gravity: 0.0,
             error: 0.0,
         };
         let last = LastEnd {

@@ -106,7 +106,7 @@ impl Impact {
         let input = &self.input;
         let exact = input.noise == DeclaredNoise::NONE;
         let law = matches!(input.law, ContactLaw::Rigid | ContactLaw::Limit { .. });
-        if until == Some(Until::Rebound)
+        if matches!(until, Some(Until::Rebound | Until::Drift(_)))
             || input.integrator != Integrator::Tangent
             || !(exact && law)
         {

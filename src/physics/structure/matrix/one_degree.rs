@@ -39,6 +39,14 @@ impl Secant {
         }
     }
 
+    /// K_t minus a stiffness \[N/m\].
+    pub(crate) const fn less(self, stiffness: f64) -> Self {
+        Self {
+            force: self.force - stiffness * self.displacement,
+            displacement: self.displacement,
+        }
+    }
+
     /// K_t \[N/m\]
     pub(crate) const fn stiffness(&self) -> f64 {
         (self.force / self.displacement).abs()

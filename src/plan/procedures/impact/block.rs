@@ -242,7 +242,7 @@ pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
 pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
-    "peak absolute base shear, minus the part due to noise",
+    "peak absolute base shear, net of P-Δ, minus the part due to noise",
 )
 .of_storey();
 
@@ -319,6 +319,7 @@ pub const UNTIL: Field = Field::choice(
             "striker and structure have both stopped or reversed",
         ),
         Variant::word("rebound", "striker and structure have separated for good"),
+        methods::DRIFT_REACHED,
         Variant::word("duration", "the whole `duration`"),
     ],
     "end condition",

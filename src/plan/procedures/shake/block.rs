@@ -2,7 +2,7 @@
 
 use crate::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, tracking};
-use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
 use psd_text::units::Dimension;
 
@@ -33,7 +33,7 @@ pub const PERIODS: ResultKind =
 pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
-    "peak absolute base shear, minus the part due to noise",
+    "peak absolute base shear, net of P-Δ, minus the part due to noise",
 );
 
 pub const ENERGY_ERROR: ResultKind = ResultKind::new(
@@ -70,6 +70,16 @@ pub const GROUND: Field =
 pub const SCALE: Field =
     Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, "");
 
+pub const UNTIL: Field = Field::choice(
+    "until",
+    &[
+        methods::DRIFT_REACHED,
+        Variant::word("duration", "the whole `duration`"),
+    ],
+    "end condition",
+)
+.default_in_words("duration");
+
 pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Shake),
     keyword: &["shake"],
@@ -90,6 +100,7 @@ pub const BLOCK: BlockKind = BlockKind {
         methods::DURATION
             .described("simulated time; after the record the ground is at rest")
             .default_in_words("to the end of the record"),
+        UNTIL,
         methods::PAUSE,
         methods::MAX_TANGENT_RATIO,
         methods::INSPECT,

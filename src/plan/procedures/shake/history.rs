@@ -30,6 +30,8 @@ pub struct ShakeHistory {
     pub damping_ratios: Vec<f64>,
     /// \[s\]
     pub time_step: f64,
+    /// The storey, from 0, whose drift ended the run before its duration.
+    pub drift_reached: Option<usize>,
     /// \[s\]
     pub critical_time_step: f64,
 }

@@ -18,4 +18,6 @@ pub struct Shake {
     pub scale: Formula,
     /// Simulated time \[s\]. None: until the end of the record.
     pub duration: Option<Formula>,
+    /// The run ends when the drift of a storey reaches this \[m\].
+    pub until: Option<f64>,
 }

@@ -30,6 +30,7 @@ impl Floors for UnloadStep {
             velocity: &[],
             acceleration: &[],
             restoring_force: &self.restoring_force,
+            gravity_force: &[],
             tracking: &[],
         }
     }

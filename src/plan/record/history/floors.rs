@@ -24,6 +24,8 @@ pub struct FloorsAt<'a> {
     pub acceleration: &'a [f64],
     /// Measured \[N\].
     pub restoring_force: &'a [f64],
+    /// G X at the targets \[N\]; empty without weights.
+    pub gravity_force: &'a [f64],
     /// The tracking error of each floor.
     pub tracking: &'a [Tracking],
 }
@@ -74,6 +76,36 @@ pub trait Floors {
     fn shear(&self) -> Vec<f64> {
         shear_of(self.restoring_force())
     }
+
+    /// Base shear net of P-Δ \[N\]: Σ(R − G X).
+    #[must_use]
+    fn base_shear(&self) -> f64 {
+        let floors = self.at();
+        let shear = floors.restoring_force.iter().sum::<f64>();
+        if floors.gravity_force.is_empty() {
+            shear
+        } else {
+            shear - floors.gravity_force.iter().sum::<f64>()
+        }
+    }
+
+    /// Whether P-Δ is computed.
+    #[must_use]
+    fn weighs(&self) -> bool {
+        !self.at().gravity_force.is_empty()
+    }
+
+    /// Shear of each storey net of P-Δ \[N\]: of R − G X.
+    #[must_use]
+    fn net_shear(&self) -> Vec<f64> {
+        let floors = self.at();
+        if floors.gravity_force.is_empty() {
+            return self.shear();
+        }
+        let forces = floors.restoring_force.iter().zip(floors.gravity_force);
+        let net: Vec<f64> = forces.map(|(force, gravity)| force - gravity).collect();
+        shear_of(&net)
+    }
 }
 
 impl<F: Floors> Floors for &F {
@@ -113,6 +145,8 @@ pub struct FloorMotion {
     pub acceleration: Vec<f64>,
     /// Measured, of each floor \[N\].
     pub restoring_force: Vec<f64>,
+    /// G X at the targets, of each floor \[N\]; empty without weights.
+    pub gravity_force: Vec<f64>,
     /// For each axis.
     pub tracking: Vec<Tracking>,
 }
@@ -129,18 +163,20 @@ impl FloorMotion {
             velocity: of(&state.velocity),
             acceleration: of(&state.acceleration),
             restoring_force: of(&state.restoring_force),
+            gravity_force: of(&state.gravity_force),
             tracking: tracking.to_vec(),
         }
     }
 
     /// The floors where a limit ended the motion to these targets \[m\], after this step, by this time \[s\]: displacement \[m\] and
-    /// force \[N\] as measured.
+    /// force \[N\] as measured, and G X there \[N\].
     pub fn cut_off(
         &self,
         time: f64,
         command: &[f64],
         displacement: &[f64],
         restoring_force: &[f64],
+        gravity_force: Vec<f64>,
     ) -> Self {
         Self {
             time,
@@ -148,6 +184,7 @@ impl FloorMotion {
             displacement: displacement.to_vec(),
             computed: displacement.to_vec(),
             restoring_force: restoring_force.to_vec(),
+            gravity_force,
             ..self.clone()
         }
     }
@@ -163,6 +200,7 @@ impl Floors for FloorMotion {
             velocity: &self.velocity,
             acceleration: &self.acceleration,
             restoring_force: &self.restoring_force,
+            gravity_force: &self.gravity_force,
             tracking: &self.tracking,
         }
     }

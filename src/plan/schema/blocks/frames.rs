@@ -13,6 +13,7 @@ pub mod storey {
     pub const MASS_UNCERTAINTY: &str = "mass_uncertainty";
     pub const STIFFNESS_UNCERTAINTY: &str = "stiffness_uncertainty";
     pub const HEIGHT: &str = "height";
+    pub const GRAVITY: &str = "gravity";
     pub const BEHAVIOUR: &str = "behaviour";
     pub const DAMPING: &str = "damping";
     pub const COULOMB: &str = "coulomb";
@@ -68,6 +69,13 @@ const STOREY: &[Variant] = &[Variant::with(
         .or(0.0, "N/m")
         .at_least_zero(),
         Field::quantity(storey::HEIGHT, Dimension::LENGTH, "height of the storey").above_zero(),
+        Field::quantity(
+            storey::GRAVITY,
+            Dimension::FORCE,
+            "weight of the floor, which gives P-Δ; this storey and those below require `height`",
+        )
+        .or(0.0, "N")
+        .at_least_zero(),
         Field::choice(
             storey::BEHAVIOUR,
             BEHAVIOURS,

@@ -32,6 +32,21 @@ const INTEGRATORS: &[Variant] = &[
 pub const INTEGRATOR: Field = Field::choice("integrator", INTEGRATORS, "time integration")
     .default_in_words("tangent; `explicit` in continuous mode");
 
+pub const REACHED: Field = Field::quantity(
+    "reached",
+    Dimension::LENGTH,
+    "drift of any storey that ends the run",
+)
+.required("100 mm")
+.above_zero();
+
+/// An end condition of a frame.
+pub const DRIFT_REACHED: Variant = Variant::with(
+    "drift",
+    &[REACHED],
+    "the drift of a storey of a frame has reached this value",
+);
+
 pub const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
 
 pub const I_MODIFICATION: Field = Field::choice(

@@ -162,6 +162,7 @@ pub(crate) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
             |step: &ImpactStep| step.energies.contact_loss,
             Style::line(palette::GREEN, 2.2, DOTTED),
         ),
+        EnergyCurve::weights(|step: &ImpactStep| step.energies.gravity),
     ];
     let total = |step: &ImpactStep| {
         let e = step.energies;

@@ -242,7 +242,7 @@ pub(crate) fn energy_balance(
         return;
     };
     let e = last.energies;
-    let input = first.energies.striker + e.weight;
+    let input = first.energies.striker + e.weight + e.gravity;
     let mut parts = vec![
         ("striker, kinetic", e.striker),
         ("structure, kinetic", e.structure),
@@ -254,7 +254,7 @@ pub(crate) fn energy_balance(
     if e.damping == 0.0 {
         parts.retain(|(name, _)| *name != DAMPING);
     }
-    let name = if e.weight == 0.0 {
+    let name = if e.weight == 0.0 && e.gravity == 0.0 {
         "input, ½MsV₀²"
     } else {
         "input, ½MsV₀² plus work of gravity"

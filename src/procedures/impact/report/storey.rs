@@ -99,6 +99,10 @@ fn method(
             time(history.critical_time_step)
         ),
     ];
+    sentences.extend(shake::report::weights(shake::report::frame_of(
+        run,
+        impact.specimen,
+    )));
     if impact.stepping.i_modification {
         sentences.push(
             "The forces were corrected to the target displacements, r* = r − K(d measured − d commanded), with the \

@@ -65,9 +65,8 @@ pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
 }
 
 pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
-    let read = |step: &S| step.restoring_force().iter().sum();
     let style = Style::line(palette::BLUE, 1.6, SOLID);
-    let curve = one(steps, "base shear", read, style);
+    let curve = one(steps, "base shear", S::base_shear, style);
     Chart {
         references: limits.to_vec(),
         ..over_time(Quantity::of("Base shear", Dimension::FORCE), vec![curve])
@@ -145,6 +144,7 @@ pub(crate) fn energy(history: &ShakeHistory) -> Chart {
             |step: &ShakeStep| step.energies.kinetic,
             Style::line(palette::SKY, 1.4, SOLID),
         ),
+        EnergyCurve::weights(|step: &ShakeStep| step.energies.gravity),
     ];
     let curves = nonzero_curves(&history.steps, |step| step.floors.time, curves);
     over_time(Quantity::of("Energy", Dimension::ENERGY), curves)

@@ -7,7 +7,7 @@ use crate::procedures::common::limit_lines::limits_on;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
-use crate::report::wording::specimen::measured;
+use crate::report::wording::specimen::{measured, weights};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
 use psd_plan::schema::ResultKind;
@@ -120,7 +120,12 @@ pub(crate) fn storey_shear(run: &Run<'_>) -> String {
 
 /// The same of the restoring forces.
 pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
-    measured("restoring forces", run.plan.frame_on_the_rig())
+    let frame = run.plan.frame_on_the_rig();
+    let sum = measured("restoring forces", frame);
+    match frame.and_then(weights) {
+        None => sum,
+        Some(_) => format!("{sum} net of P-Δ"),
+    }
 }
 
 /// The caption of the tracking of a frame.
@@ -168,7 +173,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
 
 fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
     let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
-    let base_shear = |step: &ShakeStep| step.floors.restoring_force.iter().sum();
+    let gross = |step: &ShakeStep| step.floors.restoring_force.iter().sum();
     Some(match kind {
         FigureKind::Displacement => steps
             .iter()
@@ -185,11 +190,11 @@ fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option
             .collect(),
         FigureKind::Hysteresis => steps
             .iter()
-            .map(|step| (lowest(step.drift()), base_shear(step)))
+            .map(|step| (lowest(step.drift()), gross(step)))
             .collect(),
         FigureKind::BaseShear => steps
             .iter()
-            .map(|step| (step.floors.time, base_shear(step)))
+            .map(|step| (step.floors.time, step.base_shear()))
             .collect(),
         _ => return None,
     })

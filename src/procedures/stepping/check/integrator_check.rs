@@ -172,6 +172,7 @@ pub fn stable(
             mass,
             damping: point.damping.constant().unwrap_or(0.0),
             stiffness: stiffest,
+            gravity: None,
         },
         assumed.unwrap_or(stiffest),
     );

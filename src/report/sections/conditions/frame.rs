@@ -2,7 +2,7 @@
 
 use super::described;
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::number;
+use crate::report::number::{self, percent};
 use crate::report::wording::specimen as specimen_text;
 use psd_plan::{Frame, Ground, Part};
 use psd_text::units::Dimension;
@@ -39,6 +39,10 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         Column::numbers("Stiffness"),
         Column::numbers("Height"),
     ];
+    let loads = frame.axial_loads();
+    if !loads.is_empty() {
+        columns.extend(["Weight", "P/(K h)"].map(Column::numbers));
+    }
     columns.extend(is_hybrid.then(|| Column::words("Part", 1)));
     columns.push(Column::words(behaviour, 1));
     // A column that is 0 for every storey is omitted.
@@ -59,6 +63,12 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
                 )
                 .into(),
         ];
+        if let Some((load, height)) = loads.get(index).zip(storey.height) {
+            cells.push(number::stated(storey.gravity, Dimension::FORCE).into());
+            cells.push(percent(load / (storey.stiffness * height)).into());
+        } else if !loads.is_empty() {
+            cells.extend(["—", "—"].map(Text::from));
+        }
         let part = match storey.part {
             Part::Tested { .. } => "tested",
             Part::Computed => "computed",

@@ -104,6 +104,7 @@ pub(super) fn shaken(mode: Mode) -> Plan {
         },
         scale: Constant(1.0),
         duration: None,
+        until: None,
     };
     plan.procedures = elastic_plan(300.0, vec![ProcedureKind::Shake(shake)]).procedures;
     plan

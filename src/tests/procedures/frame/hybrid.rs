@@ -12,13 +12,13 @@ use psd_plan::{
     ProcedureKind, Shake, ShakeDamping, Stepping, Storey, StoreyTarget, Unload, Until, VirtualLink,
 };
 
-const TESTED: Part = Part::TESTED;
+pub(super) const TESTED: Part = Part::TESTED;
 const APART: Part = Part::Tested { apart: true };
-const COMPUTED: Part = Part::Computed;
+pub(super) const COMPUTED: Part = Part::Computed;
 
 /// First, middle and highest storey tested; two in one assembly; an assembly on a computed storey; two assemblies; adjacent but apart;
 /// none tested.
-const SPLITS: [[Part; 3]; 9] = [
+pub(super) const SPLITS: [[Part; 3]; 9] = [
     [TESTED, COMPUTED, COMPUTED],
     [COMPUTED, TESTED, COMPUTED],
     [COMPUTED, COMPUTED, TESTED],
@@ -30,7 +30,7 @@ const SPLITS: [[Part; 3]; 9] = [
     [COMPUTED, COMPUTED, COMPUTED],
 ];
 
-const INTEGRATORS: [Integrator; 4] = [
+pub(super) const INTEGRATORS: [Integrator; 4] = [
     Integrator::Tangent,
     Integrator::Explicit,
     Integrator::AlphaOs { alpha: 0.0 },
@@ -38,7 +38,7 @@ const INTEGRATORS: [Integrator; 4] = [
 ];
 
 /// Each storey yields at a drift of 10 mm.
-fn bilinear(stiffness: f64) -> Behaviour {
+pub(super) fn bilinear(stiffness: f64) -> Behaviour {
     Behaviour::Bilinear {
         stiffness,
         yield_force: 0.01 * stiffness,
@@ -57,12 +57,16 @@ fn bouc_wen(stiffness: f64) -> Behaviour {
     }
 }
 
-fn elastic(stiffness: f64) -> Behaviour {
+pub(super) fn elastic(stiffness: f64) -> Behaviour {
     Behaviour::Elastic { stiffness }
 }
 
 /// Storeys of 600, 400 and 300 kN/m on ground that excites them beyond yield.
-fn shaken(parts: [Part; 3], model: fn(f64) -> Behaviour, integrator: Integrator) -> Plan {
+pub(super) fn shaken(
+    parts: [Part; 3],
+    model: fn(f64) -> Behaviour,
+    integrator: Integrator,
+) -> Plan {
     let storey = |(mass, stiffness), part| Storey {
         part,
         ..Storey::new(mass, stiffness, model(stiffness))
@@ -86,7 +90,7 @@ fn shaken(parts: [Part; 3], model: fn(f64) -> Behaviour, integrator: Integrator)
     plan
 }
 
-fn shake(plan: &mut Plan) -> &mut Shake {
+pub(super) fn shake(plan: &mut Plan) -> &mut Shake {
     match &mut plan.procedures[0].kind {
         ProcedureKind::Shake(shake) => shake,
         other => panic!("{other:?}"),
@@ -94,7 +98,12 @@ fn shake(plan: &mut Plan) -> &mut Shake {
 }
 
 /// A striker of 500 kg at 3 m/s on a floor of the same frame.
-fn struck(parts: [Part; 3], floor: usize, integrator: Integrator, contact: Contact) -> Plan {
+pub(super) fn struck(
+    parts: [Part; 3],
+    floor: usize,
+    integrator: Integrator,
+    contact: Contact,
+) -> Plan {
     let plan = shaken(parts, bilinear, integrator);
     let impact = Impact {
         specimen: 0,
@@ -120,7 +129,7 @@ fn struck(parts: [Part; 3], floor: usize, integrator: Integrator, contact: Conta
     struck
 }
 
-fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
+pub(super) fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
     match &record.procedures[procedure].history {
         History::Shake(history) => history
             .steps
@@ -143,7 +152,7 @@ fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
 type Quantity = fn(&FloorMotion) -> &Vec<f64>;
 
 /// Every quantity of every step differs by less than `within` of its largest value.
-fn same(found: &Record, wanted: &Record, procedure: usize, within: f64, case: &str) {
+pub(super) fn same(found: &Record, wanted: &Record, procedure: usize, within: f64, case: &str) {
     assert_eq!(found.outcome, Outcome::Completed, "{case}");
     assert_eq!(wanted.outcome, Outcome::Completed, "{case}");
     let (found, wanted) = (floors(found, procedure), floors(wanted, procedure));

@@ -1,6 +1,7 @@
-//! Frames: unloading, impact series on a storey, and frames of which the rig carries a part.
+//! Frames: unloading, impact series on a storey, frames of which the rig carries a part, and weights on the floors.
 
 pub(crate) mod escalate;
+mod gravity;
 mod hybrid;
 mod unloading;
 
@@ -31,6 +32,7 @@ pub(super) fn storey(index: usize, post_yield_ratio: f64) -> Storey {
         },
         damping: 0.0,
         coulomb: 0.0,
+        gravity: 0.0,
         part: Part::TESTED,
     }
 }

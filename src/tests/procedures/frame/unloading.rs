@@ -174,6 +174,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
         behaviour: behaviour.clone(),
         damping: 0.0,
         coulomb: 0.2,
+        gravity: 0.0,
         part: Part::TESTED,
     };
     frame.specimens[0].frame = Some(Frame::of_storeys(vec![floor]));

@@ -136,6 +136,7 @@ fn followed(
         acceleration: nothing(),
         restoring_force: nothing(),
         force_at_computed: nothing(),
+        gravity_force: Vec::new(),
         load: nothing(),
         storey_stiffness: Vec::new(),
         energies: FrameEnergies::default(),

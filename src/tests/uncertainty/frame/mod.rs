@@ -36,6 +36,7 @@ pub(crate) fn base_excited_plan(
         },
         scale: constant(1.0),
         duration: None,
+        until: None,
     };
     let mut plan = elastic_plan(1.0, vec![ProcedureKind::Shake(shake)]);
     let times = (0..accelerations.len())

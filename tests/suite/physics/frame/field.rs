@@ -262,6 +262,7 @@ fn a_diagonal_frame_grows_axis_by_axis_as_its_single_degrees_of_freedom() {
                 .map(|mass| omega * omega * mass)
                 .collect::<Vec<f64>>(),
         ),
+        gravity: None,
     };
     let start = [1.0, 0.2, 3.0, 0.01];
     let errs = |axis: usize, before: f64, target: f64| match axis {

@@ -121,6 +121,7 @@ fn yielding_frame() -> FrameMatrices {
         mass,
         damping,
         stiffness,
+        gravity: None,
     }
 }
 

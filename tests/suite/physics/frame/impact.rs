@@ -56,6 +56,7 @@ fn single(mass: f64, stiffness: f64) -> FrameMatrices {
         mass: SymmetricBand::diagonal(&[mass]),
         damping: SymmetricBand::zero(1, 0),
         stiffness: storey_stiffness(&[stiffness]),
+        gravity: None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Frames of many degrees of freedom: modes, integrators, loads and impacts, compared with independent solutions.
 
 mod field;
+mod gravity;
 mod ground;
 mod impact;
 mod modes;

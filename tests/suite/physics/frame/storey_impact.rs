@@ -21,6 +21,7 @@ fn frame(damping: f64) -> FrameMatrices {
         mass: SymmetricBand::diagonal(&MASSES),
         damping: matrix,
         stiffness,
+        gravity: None,
     }
 }
 

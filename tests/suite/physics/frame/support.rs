@@ -13,6 +13,7 @@ pub fn uniform(storeys: usize, mass: f64, stiffness: f64) -> FrameMatrices {
         mass: SymmetricBand::diagonal(&vec![mass; storeys]),
         damping: SymmetricBand::zero(storeys, 0),
         stiffness: storey_stiffness(&vec![stiffness; storeys]),
+        gravity: None,
     }
 }
 

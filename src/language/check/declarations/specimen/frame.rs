@@ -8,7 +8,7 @@ use crate::check::declarations::striker::MOST_UNCERTAIN;
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
-use crate::codes::{E405, E409, E621, E622, E623, E668};
+use crate::codes::{E405, E409, E621, E622, E623, E668, E670};
 use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
@@ -17,6 +17,7 @@ use psd_plan::{Behaviour, Frame, MOST_STOREYS, Part, Storey};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Span, Spanned};
 use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 use super::behaviour::{self, Material, Written};
 use super::matrix;
@@ -225,6 +226,7 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
         .map(|(index, chosen)| storey(checker, chosen, index + 1, at(index), context))
         .collect();
     let storeys: Vec<Storey> = storeys.into_iter().collect::<Option<_>>()?;
+    stands(checker, &chosen, &storeys, at)?;
     let mut below = Part::Computed;
     for (index, storey) in storeys.iter().enumerate() {
         let below = std::mem::replace(&mut below, storey.part);
@@ -237,6 +239,94 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
         }
     }
     Some(storeys)
+}
+
+/// A storey that carries weight has a height, and stands under the weight: θ = P/(K h) < 1.
+fn stands<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &[Chosen<'a>],
+    storeys: &[Storey],
+    at: impl Fn(usize) -> Span,
+) -> Option<()> {
+    let loads = Frame::of_storeys(storeys.to_vec()).axial_loads();
+    for (index, (load, own)) in loads.into_iter().zip(storeys).enumerate() {
+        if load == 0.0 {
+            continue;
+        }
+        let Some(height) = own.height else {
+            let from = storeys.iter().rposition(|storey| storey.gravity > 0.0);
+            let from = from.unwrap_or(index);
+            return checker.fail(CarriesWithoutHeight {
+                number: index + 1,
+                span: at(index),
+                weight: chosen[from].span(storey::GRAVITY).unwrap_or(at(from)),
+            });
+        };
+        let coefficient = load / (own.stiffness * height);
+        if coefficient >= 1.0 {
+            let named = |field| chosen[index].span(field);
+            return checker.fail(FallsUnderWeight {
+                number: index + 1,
+                coefficient,
+                load,
+                stiffness: own.stiffness,
+                height,
+                span: named(storey::HEIGHT).unwrap_or(at(index)),
+            });
+        }
+    }
+    Some(())
+}
+
+#[derive(Violation)]
+#[violation(E670, "storey {number} carries weight, but has no `height`")]
+#[help("add `height: 3 m` to the storey: P-Δ is the weight above times drift over height")]
+struct CarriesWithoutHeight {
+    number: usize,
+    #[label("`height` is missing")]
+    span: Span,
+    #[label("weight above")]
+    weight: Span,
+}
+
+/// A storey that is unstable at rest: P \[N\], K \[N/m\], h \[m\].
+struct FallsUnderWeight {
+    number: usize,
+    coefficient: f64,
+    load: f64,
+    stiffness: f64,
+    height: f64,
+    span: Span,
+}
+
+impl Violation for FallsUnderWeight {
+    const CODE: Code = E670;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            number,
+            coefficient,
+            load,
+            stiffness,
+            height,
+            span,
+        } = self;
+        let message = format!(
+            "storey {number} falls over under the weight above it: P/(K h) = {} (below 1 expected)",
+            significant(coefficient, 3)
+        );
+        Diagnostic::new(Self::CODE, message)
+            .at(
+                span,
+                format!(
+                    "P = {}, K = {}, h = {}",
+                    shown(load, Dimension::FORCE),
+                    shown(stiffness, Dimension::STIFFNESS),
+                    shown(height, Dimension::LENGTH)
+                ),
+            )
+            .help("write a larger `stiffness` or `height`, or a smaller `gravity`: it is a force, the weight of one floor")
+    }
 }
 
 #[derive(Violation)]
@@ -351,6 +441,7 @@ fn storey<'a>(
     let stiffness_uncertainty =
         checker.constant_argument(chosen, storey::STIFFNESS_UNCERTAINTY, context);
     let height = checker.optional_argument(chosen, storey::HEIGHT, context);
+    let gravity = checker.constant_argument(chosen, storey::GRAVITY, context);
     let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
     let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
     let behaviour = match chosen.find(storey::BEHAVIOUR) {
@@ -375,8 +466,8 @@ fn storey<'a>(
     let damping = checker.constant_argument(chosen, storey::DAMPING, context);
     let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
     let part = part(checker, chosen);
-    let (mass, height, behaviour, damping, coulomb) =
-        (mass?, height?, behaviour?, damping?, coulomb?);
+    let (mass, height, gravity, behaviour, damping, coulomb) =
+        (mass?, height?, gravity?, behaviour?, damping?, coulomb?);
     let part = part?;
     for (field, value) in [(storey::DAMPING, damping), (storey::COULOMB, coulomb)] {
         if part == Part::Computed && value != 0.0 {
@@ -451,6 +542,7 @@ fn storey<'a>(
         stiffness,
         stiffness_uncertainty,
         height,
+        gravity,
         behaviour,
         damping,
         coulomb,
