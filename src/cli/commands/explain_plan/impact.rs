@@ -19,6 +19,7 @@ pub(super) fn damping(procedure: &ProcedureRecord) -> Vec<Vec<String>> {
         mass: input(impact::MASS.name),
         damping: input(impact::DAMPING.name),
         stiffness: input(STIFFNESS.name),
+        gravity: None,
     };
     if matrices.damping <= 0.0 {
         return Vec::new();
