@@ -144,7 +144,7 @@ mod tests {
         let program = Arguments::command();
         let own: Vec<&str> = program
             .get_subcommands()
-            .map(|own| own.get_name())
+            .map(clap::Command::get_name)
             .collect();
         for (words, hint) in COMMANDS {
             for word in *words {
