@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::codes::E666;
 use psd_language::check::checker::{Checker, End};
 use psd_language::check::expressions::data_file::DataFile;
-use psd_language::check::expressions::parameters::{names_of_parameters, read_settings};
+use psd_language::check::expressions::parameters::{has_let, names_of_parameters, read_settings};
 use psd_language::check::scope::{Scope, Setting};
 use psd_language::check::violations::UnknownParameter;
 use psd_language::check::wording::shown;
@@ -295,6 +295,7 @@ impl ParsedPlan {
                 UnknownParameter {
                     name,
                     known: &known,
+                    calculated: has_let(&self.trees, name),
                 }
                 .diagnostic()
             })

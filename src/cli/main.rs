@@ -7,6 +7,7 @@ mod commands;
 mod evidence;
 mod exit;
 mod files;
+mod hints;
 mod operator;
 mod output;
 mod settings;
@@ -30,6 +31,7 @@ fn run_command_line(arguments: impl Iterator<Item = OsString>) -> Exit {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version go to stdout, errors of the command line to stderr. A closed pipe is not an error.
+            let error = hints::with_hint(error);
             let _ = error.print();
             return if error.use_stderr() {
                 Exit::Wrong

@@ -593,6 +593,17 @@ fn a_file_that_is_not_there_ends_every_command_alike() {
 }
 
 #[test]
+fn a_plan_without_its_ending_is_named() {
+    let workspace = Workspace::new(&[("good.psd", SOUND)]);
+    let ended = workspace.psd(&["run", "good"]).with(3);
+    assert!(
+        ended.stderr.contains("did you mean `good.psd`?"),
+        "{}",
+        ended.stderr
+    );
+}
+
+#[test]
 fn a_plan_without_a_procedure_is_not_run() {
     let (specimen, _) = SOUND.split_once("striker hammer").unwrap();
     let workspace = Workspace::new(&[("idle.psd", specimen), ("empty.psd", "")]);

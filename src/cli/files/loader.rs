@@ -101,9 +101,15 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
             .and_then(utf8)
             .map_err(not_a_plan);
     }
-    let metadata = path
-        .metadata()
-        .map_err(|error| Failure::file(path, plain(&error)))?;
+    let metadata = path.metadata().map_err(|error| {
+        let failure = Failure::file(path, plain(&error));
+        let with_ending = path.with_added_extension("psd");
+        if with_ending.is_file() {
+            failure.help(format!("did you mean `{}`?", with_ending.display()))
+        } else {
+            failure
+        }
+    })?;
     if metadata.is_dir() {
         return Err(
             Failure::file(path, "is a folder").help("name the plan itself, a `.psd` or `.md` file")

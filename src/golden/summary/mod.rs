@@ -302,7 +302,8 @@ impl Units {
             ("value" | "input_u", Some(input)) => Some(input),
             ("sensitivity", Some(input)) => self.own.over(input),
             (
-                "value" | "limit" | "published" | "tolerance" | "u" | "guard_band" | "contribution",
+                "value" | "limit" | "published" | "tolerance" | "u" | "guard_band" | "contribution"
+                | "in_finer_steps",
                 _,
             ) => Some(self.own),
             _ => None,

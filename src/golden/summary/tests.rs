@@ -6,7 +6,8 @@ use super::*;
 
 fn summary() -> Value {
     let condition = json!({ "condition": "hit.x < 1 m", "verdict": "pass", "value": 0.5, "limit": 1.0, "tolerance": null,
-        "margin": 0.5, "unit": "m", "u": null, "guard_band": 0.1, "conforms": 0.9, "reason": null });
+        "margin": 0.5, "unit": "m", "u": null, "guard_band": 0.1, "conforms": 0.9,
+        "in_finer_steps": [0.4, 0.6], "reason": null });
     json!({
         "schema": "psd.summary/1", "run_id": "a", "psd": "0.1.0", "plan": { "title": "T", "sha256": "b" },
         "verdict": "pass",
@@ -183,6 +184,10 @@ fn every_number_has_its_own_unit() {
         ("/requirements/0/guard_band".to_owned(), 0.2),
         ("/requirements/0/conditions/0/guard_band".to_owned(), 0.2),
         ("/requirements/0/conditions/0/conforms".to_owned(), 0.8),
+        (
+            "/requirements/0/conditions/0/in_finer_steps/1".to_owned(),
+            0.7,
+        ),
     ] {
         of(&mut now, &path, value);
     }
@@ -215,6 +220,7 @@ fn every_number_has_its_own_unit() {
             "budget of hit.x: noise: contribution [m]",
             "require \"stays\", condition 1: guard_band [m]",
             "require \"stays\", condition 1: conforms [1]",
+            "require \"stays\", condition 1: in_finer_steps.1 [m]",
         ]
     );
 }

@@ -94,14 +94,22 @@ pub struct UnknownProcedure<'a> {
 pub struct UnknownParameter<'a> {
     pub name: &'a str,
     pub known: &'a [&'a str],
+    /// A `let` of the plan has this name.
+    pub calculated: bool,
 }
 
 impl Violation for UnknownParameter<'_> {
     const CODE: Code = E214;
 
     fn diagnostic(self) -> Diagnostic {
-        let Self { name, known } = self;
-        let help = if known.is_empty() {
+        let Self {
+            name,
+            known,
+            calculated,
+        } = self;
+        let help = if calculated {
+            format!("write `param {name} = …` in the plan: a `let` cannot be set")
+        } else if known.is_empty() {
             "remove `--set`; the plan has no `param`".to_owned()
         } else {
             suggestion(name, known.iter().copied())

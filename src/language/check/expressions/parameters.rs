@@ -53,6 +53,7 @@ pub fn read_settings(
                 UnknownParameter {
                     name,
                     known: &known,
+                    calculated: has_let(trees, name),
                 }
                 .diagnostic(),
             );
@@ -94,6 +95,12 @@ pub fn names_of_parameters(trees: &[Ast]) -> Vec<&str> {
             _ => None,
         })
         .collect()
+}
+
+/// Whether a `let` has this name.
+pub fn has_let(trees: &[Ast], wanted: &str) -> bool {
+    let mut items = trees.iter().flat_map(|tree| &tree.items);
+    items.any(|item| matches!(&item.kind, ItemKind::Let { name, .. } if name.node == wanted))
 }
 
 /// A value must be on one line.

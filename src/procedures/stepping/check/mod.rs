@@ -123,7 +123,9 @@ pub(crate) fn beyond_duration(
         return;
     };
     let at = |field| checker.value_or_head(block, field);
-    let written = checker.field(block, methods::TIME_STEP.name).is_some();
+    let written = checker
+        .field(block, methods::TIME_STEP.name)
+        .is_some_and(|(_, entry)| !checker.text(entry.value.span).contains("critical"));
     checker.report(StepBeyondDuration {
         at: at(methods::TIME_STEP.name),
         written,
