@@ -213,9 +213,7 @@ impl<'a> DryRun<'a> {
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }
-            if !rows.is_empty() {
-                section(&format!("Specimen {}", specimen.name), rows);
-            }
+            section(&format!("Specimen {}", specimen.name), rows);
             if let Some((frame, _)) = hybrid {
                 section(
                     &format!("{}, drawn", specimen.name),
