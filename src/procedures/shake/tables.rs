@@ -63,14 +63,29 @@ fn rows<'a, F: Floors + 'a, S>(
     steps.flat_map(storeys).collect()
 }
 
-/// The columns, with those of the rig if a specimen has a scale, of steps that contain their floors.
+/// The columns of steps that contain their floors.
 fn written_steps<'a, S: Floors>(
     columns: Vec<TableColumn<FloorRow<'a, S>>>,
     steps: &'a [S],
     scaled: Option<&Assemblies>,
 ) -> Vec<Column> {
     let rows = rows(steps.iter().map(|step| (step, step)), scaled);
-    of_frame(columns, &rows, scaled)
+    written_rows(columns, &rows, scaled)
+}
+
+/// The columns of these rows: those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale.
+fn written_rows<'a, S>(
+    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
+    rows: &[FloorRow<'a, S>],
+    scaled: Option<&Assemblies>,
+) -> Vec<Column> {
+    let weighs = rows
+        .first()
+        .is_some_and(|row| !row.floors.gravity_force.is_empty());
+    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
+    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
+    let of_rig = scaled.map_or_else(Vec::new, |_| on_the_rig());
+    written(&joined([columns, of_rig]), rows)
 }
 
 /// The number of the storey, from 1.
@@ -100,21 +115,6 @@ fn computed<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
 /// The shear of the storeys without P-Δ.
 fn spring_shear<'a, S>() -> TableColumn<FloorRow<'a, S>> {
     Number(columns::SPRING_SHEAR, |row| row.spring_shear)
-}
-
-/// The columns of a frame; those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale.
-fn of_frame<'a, S>(
-    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
-    rows: &[FloorRow<'a, S>],
-    scaled: Option<&Assemblies>,
-) -> Vec<Column> {
-    let weighs = rows
-        .first()
-        .is_some_and(|row| !row.floors.gravity_force.is_empty());
-    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
-    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
-    columns.extend(scaled.into_iter().flat_map(|_| on_the_rig()));
-    written(&columns, rows)
 }
 
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
@@ -276,7 +276,7 @@ pub(crate) fn storey_impact(
         .map(|(floors, impact)| StruckStep { impact, floors })
         .collect();
     let rows = rows(steps.iter().map(|step| (step.floors, step)), scaled);
-    of_frame(struck(), &rows, scaled)
+    written_rows(struck(), &rows, scaled)
 }
 
 /// The columns of an unloading.

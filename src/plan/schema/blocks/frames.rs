@@ -194,7 +194,7 @@ pub const STIFFNESS_MATRIX_UNCERTAINTY: Field = Field::quantity(
 .within(0.0, 0.2)
 .advanced();
 
-/// The damping of a frame.
+/// The damping as a fraction of the critical one.
 pub const DAMPING_RATIO: Field = Field::quantities(
     "damping_ratio",
     Dimension::NUMBER,

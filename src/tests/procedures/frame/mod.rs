@@ -1,4 +1,4 @@
-//! Frames: unloading, impact series on a storey, frames of which the rig carries a part, at any scale, and weights on the floors.
+//! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, and weights on the floors.
 
 pub(crate) mod escalate;
 mod gravity;
