@@ -205,21 +205,18 @@ impl<'a> DryRun<'a> {
                 .into_iter()
                 .map(|text| vec!["P-Δ".to_owned(), text])
                 .collect();
-            let hybrid =
-                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)));
-            if let Some((frame, text)) = &hybrid {
-                rows.push(vec!["substructures".to_owned(), text.clone()]);
+            if let Some((frame, text)) =
+                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
+            {
+                rows.push(vec!["substructures".to_owned(), text]);
                 let numbers = specimen_text::numbers(frame);
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }
             section(&format!("Specimen {}", specimen.name), rows);
-            if let Some((frame, _)) = hybrid {
-                section(
-                    &format!("{}, drawn", specimen.name),
-                    substructures::drawing(frame),
-                );
-            }
+            let hybrid = frame.filter(|frame| specimen_text::substructures(frame).is_some());
+            let drawn = hybrid.map_or_else(Vec::new, substructures::drawing);
+            section(&format!("{}, drawn", specimen.name), drawn);
         }
         let lagging = tracking::lagging(self.plan);
         section("Start", start::rows(self.plan));
