@@ -99,8 +99,9 @@ fn run(page: &Path) -> (String, String) {
         &folder.path().join("plans"),
     );
     for block in super::blocks(&text) {
-        let file = block.info.strip_prefix("psd ").unwrap_or_default();
-        if file.ends_with(".psd") && !file.contains('/') {
+        let file = Path::new(block.info.strip_prefix("psd ").unwrap_or_default());
+        let is_plan = file.extension().is_some_and(|ending| ending == "psd");
+        if is_plan && file.components().count() == 1 {
             fs::write(folder.path().join(file), &block.body).expect("the plan can be written");
         }
     }

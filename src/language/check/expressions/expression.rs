@@ -293,7 +293,7 @@ impl Violation for WrongDimension<'_> {
             }
             (Some(_), Dimension::DAMPING) if found == Dimension::NUMBER => {
                 format!(
-                    "write a damping coefficient: `2 * {text} * sqrt(k * m)`, with the stiffness k and the mass m"
+                    "write a damping coefficient, such as `2 * {text} * sqrt(k * m)`; an impact also takes `damping_ratio = {text}`"
                 )
             }
             (Some(number), _) => {

@@ -337,7 +337,10 @@ pub const BLOCK: BlockKind = BlockKind {
         MASS,
         STIFFNESS,
         DAMPING,
-        frames::DAMPING_RATIO.of_frames(),
+        frames::DAMPING_RATIO.described(
+            "instead of `damping`: C = 2 ζ √(K M) with `stiffness` and `mass`; of a frame, one value for Rayleigh damping with this \
+             ratio in the first two modes, or a list with one ratio per mode",
+        ),
         frames::DAMPING_UNCERTAINTY.of_frames(),
         CONTACT,
         methods::INTEGRATOR,

@@ -6,18 +6,18 @@ use std::rc::Rc;
 use crate::codes::E640;
 use crate::procedures::common::violations::NoUseOnAFrame;
 use crate::procedures::shake;
-use psd_language::check::checker::Checker;
+use psd_language::check::checker::{Checker, Shape};
 use psd_language::check::declarations::specimen;
 use psd_language::check::expressions::fields::whole;
-use psd_language::codes::E641;
-use psd_plan::formula::Formula;
+use psd_language::check::violations::ListForNumber;
+use psd_language::codes::{E208, E641};
+use psd_plan::formula::{Formula, Function, Operator};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames;
 use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::units::{Dimension, display};
 
 /// One degree of freedom, of the specimen at the block `tested`.
 pub(crate) fn point(
@@ -37,9 +37,18 @@ pub(crate) fn point(
         None => tested.and_then(|tested| specimen::mass_uncertainty(checker, tested)),
     };
     let stiffness = checker.stiffness_or_specimens(block, tested);
-    let damping = checker.quantity(block, impact::DAMPING.name);
-    let coefficient = coefficient(checker, block, mass.as_ref(), stiffness.as_ref());
-    no_frame(checker, block, tested, coefficient.as_deref())?;
+    let damping = match checker.field(block, frames::DAMPING_RATIO.name) {
+        Some((entry, _)) => coefficient(
+            checker,
+            block,
+            tested,
+            entry,
+            mass.as_ref(),
+            stiffness.as_ref(),
+        ),
+        None => checker.quantity(block, impact::DAMPING.name),
+    };
+    no_frame(checker, block, tested)?;
     Some(ImpactTarget::Point(PointTarget {
         mass: mass?,
         mass_uncertainty: mass_uncertainty?,
@@ -183,28 +192,52 @@ fn struck_storey(
     storey.checked_sub(1)
 }
 
-/// What to write instead of a damping ratio ζ: the coefficient 2 ζ √(k m) of one degree of freedom, as far as mass \[kg\] and stiffness
-/// \[N/m\] are known before the run. None without a ratio.
+/// Both, where one gives the other.
+#[derive(Violation)]
+#[violation(E208, "damping given twice: by `damping` and by `damping_ratio`")]
+#[help("remove one of them")]
+struct DampingTwice {
+    #[label("given again")]
+    again: Span,
+    #[label("first given here")]
+    first: Span,
+}
+
+/// The coefficient C = 2 ζ √(K M) \[N·s/m\] of one degree of freedom with the damping ratio ζ of a field, from the mass M and the stiffness K
+/// of the impact.
 fn coefficient(
     checker: &mut Checker,
     block: usize,
+    tested: Option<usize>,
+    entry: usize,
     mass: Option<&Formula>,
     stiffness: Option<&Formula>,
-) -> Option<String> {
-    let (entry, written) = checker.field(block, frames::DAMPING_RATIO.name)?;
-    let (text, span) = (checker.text(written.value.span), written.value.span);
+) -> Option<Formula> {
+    let ratio = &checker.scope.blocks[block].block.fields[entry];
+    let (again, span) = (ratio.key.span, ratio.value.span);
+    if let Some((_, first)) = checker.field(block, impact::DAMPING.name) {
+        let first = first.key.span;
+        return checker.fail(DampingTwice { again, first });
+    }
     let ratio = checker.entry(block, entry, span)?;
-    let known = |formula: Option<&Formula>| formula.and_then(Formula::constant);
-    Some(match (ratio.constant(), known(mass), known(stiffness)) {
-        (Some(ratio), Some(mass), Some(stiffness)) => {
-            let damping = 2.0 * ratio * (stiffness * mass).sqrt();
-            let damping = display::plain(damping, Dimension::DAMPING, 4);
-            format!("write `damping = {damping}`, which is a damping ratio of {text}")
-        }
-        _ => format!(
-            "write `damping = 2 * {text} * sqrt(k * m)`, with the stiffness k and the mass m"
-        ),
-    })
+    if ratio.shape == Shape::List {
+        return checker.fail(ListForNumber { span });
+    }
+    // The mass of the specimen keeps its uncertainty.
+    let written = mass?;
+    let mass = if checker.field(block, impact::MASS.name).is_some() {
+        written.clone()
+    } else {
+        let head = checker.scope.blocks[block].block.head;
+        specimen::exported(checker, tested?, impact::MASS.name, head)?
+    };
+    let product =
+        |first, second| Formula::Binary(Operator::Multiply, Box::new(first), Box::new(second));
+    let root = Formula::Call(Function::Sqrt, vec![product(stiffness?.clone(), mass)]);
+    Some(product(
+        product(Formula::Constant(2.0), ratio.formula),
+        root,
+    ))
 }
 
 #[derive(Violation)]
@@ -212,12 +245,11 @@ fn coefficient(
     E641,
     "`{field}` requires a frame, but this impact strikes one degree of freedom"
 )]
-#[help("{}", help)]
+#[help("remove it: the modes of a frame have uncertain damping ratios")]
 struct OnlyOnAFrame<'a> {
     field: &'a str,
     #[label("no effect here")]
     at: Span,
-    help: &'a str,
 }
 
 #[derive(Violation)]
@@ -236,33 +268,13 @@ struct StoreyOfNone<'a> {
     declared: Span,
 }
 
-/// Refuses the fields of a frame in an impact on one degree of freedom. `coefficient`: what to write instead of a damping ratio.
-fn no_frame(
-    checker: &mut Checker,
-    block: usize,
-    specimen: Option<usize>,
-    coefficient: Option<&str>,
-) -> Option<()> {
+/// Refuses the fields of a frame in an impact on one degree of freedom.
+fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
     let mut sound = Some(());
-    let hints = [
-        (
-            frames::DAMPING_RATIO.name,
-            coefficient.unwrap_or("write `damping`, a coefficient"),
-        ),
-        (
-            frames::DAMPING_UNCERTAINTY.name,
-            "remove it: the modes of a frame have damping ratios",
-        ),
-    ];
-    for (field, hint) in hints {
-        if let Some((_, entry)) = checker.field(block, field) {
-            let at = entry.key.span;
-            sound = checker.fail(OnlyOnAFrame {
-                field,
-                at,
-                help: hint,
-            });
-        }
+    let field = frames::DAMPING_UNCERTAINTY.name;
+    if let Some((_, entry)) = checker.field(block, field) {
+        let at = entry.key.span;
+        sound = checker.fail(OnlyOnAFrame { field, at });
     }
     if let (Some((_, entry)), Some(specimen)) =
         (checker.field(block, impact::STOREY.name), specimen)

@@ -1,5 +1,6 @@
 //! Impacts on plans built by hand: the paper's first example, observations, limits, inspections, resolution of the rig.
 
+use crate::check::{Options, check, no_files};
 use crate::run::{Inspection, Observer, run};
 use crate::tests::testing::{elastic_plan, every, number, result_of, run_unwatched};
 use psd_physics::contact::state::StepState;
@@ -412,4 +413,40 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
         remarks[0].text
     );
     assert!(stiffening(psd_plan::Integrator::Tangent).is_empty());
+}
+
+/// A damping ratio ζ is the coefficient C = 2 ζ √(K M), with the uncertainties of a measured stiffness and of a stated mass.
+#[test]
+fn a_damping_ratio_is_its_coefficient() {
+    let run_with = |damping: &str| {
+        let text = format!(
+            "specimen beam {{\n mass = 4 kg\n mass_uncertainty = 0.2 kg\n behaviour = elastic(10 kN/m)\n}}\n\
+             striker hammer {{\n mass = 10 kg\n velocity = 1 m/s\n}}\n\
+             rig bench {{\n link = virtual(noise: 1 N, seed: 1)\n force_uncertainty = 0.5 %\n}}\n\
+             stiffness ramp k0 {{\n displacements = 1 mm .. 10 mm step 1 mm\n}}\n\
+             impact hit {{\n striker = hammer\n stiffness = k0.stiffness\n contact = restitution(0)\n {damping}\n \
+             duration = 0.3 s\n}}\nrequire \"travel\" hit.max_displacement < 1 m\n"
+        );
+        let checked = check("ratio.psd", &text, &no_files, &Options::default());
+        let plan = checked
+            .plan
+            .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        run_unwatched(&plan)
+    };
+    let ratio = run_with("damping_ratio = 2 %");
+    let coefficient = run_with("damping = 2 * 2 % * sqrt(k0.stiffness * beam.mass)");
+    for name in [schema::MAX_DISPLACEMENT.name, schema::DAMPING_ENERGY.name] {
+        let of_ratio = number(&ratio, 1, name);
+        assert_eq!(of_ratio, number(&coefficient, 1, name), "{name}");
+        assert!(of_ratio.1.is_some_and(|u| u > 0.0), "{name}");
+    }
+    let damping = |record: &Record| {
+        let inputs = &record.procedures[1].inputs;
+        let found = inputs.iter().find(|(name, ..)| *name == "damping");
+        found.expect("the damping is an input").1.value
+    };
+    assert!(
+        (damping(&ratio) / 8.0 - 1.0).abs() < 5e-3,
+        "2 · 2 % · √(10 kN/m · 4 kg)"
+    );
 }
