@@ -364,9 +364,8 @@ impl<'a> Lines<'a> {
         let mut variants: &'static [Variant] = &[];
         let mut call = None;
         let mut take = |field: Option<&'static Field>| {
-            if let Some(FieldType::Choice(own) | FieldType::Choices(own) | FieldType::Inputs(own)) =
-                field.map(|field| field.ty)
-            {
+            let own = field.map_or(&[][..], |field| field.ty.variants());
+            if !own.is_empty() {
                 variants = own;
             }
             variants

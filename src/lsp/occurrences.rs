@@ -303,7 +303,8 @@ impl<'a> Reader<'a> {
             Some(
                 FieldType::Choice(variants)
                 | FieldType::Choices(variants)
-                | FieldType::Inputs(variants),
+                | FieldType::Inputs(variants)
+                | FieldType::QuantityOr(_, variants),
             ) => Where { variants, ..place },
             _ => place,
         };
@@ -347,6 +348,7 @@ impl<'a> Reader<'a> {
                 FieldType::Choice(_)
                     | FieldType::Choices(_)
                     | FieldType::Inputs(_)
+                    | FieldType::QuantityOr(..)
                     | FieldType::Inner
                     | FieldType::Inners
             )

@@ -9,6 +9,7 @@ pub mod report;
 pub mod reproduction;
 pub mod results;
 pub mod rig;
+pub mod scaled;
 pub mod schema;
 pub mod source;
 pub mod specimen;
@@ -38,7 +39,7 @@ pub use psd_physics::specimen::{
     Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading,
 };
 pub use psd_physics::structure::beam::{Beam, Ends};
-pub use psd_physics::structure::frame::{Frame, Part, Storey};
+pub use psd_physics::structure::frame::{Frame, Part, Scale, Storey};
 pub use psd_physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };

@@ -28,6 +28,7 @@ use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
 use psd_physics::self_test::SelfTestPart;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::Formula;
 use psd_plan::record::{
     CycleStep, History, MoveStep, NamedResult, ProcedureRecord, RampStep, SweepStep,
@@ -357,18 +358,20 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
 }
 
 /// Report: the table of a procedure's steps, with its further tables; none if it records no steps.
-pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
+pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Table<'a>> {
     let name = procedure.name.clone();
+    let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
+    let scaled = assemblies.filter(Assemblies::is_scaled);
     match &procedure.history {
         History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
         History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
-        History::Impact(history) => vec![impact::tables::table(name, history)],
-        History::Shake(history) => vec![shake::tables::table(name, history)],
+        History::Impact(history) => vec![impact::tables::table(name, history, scaled)],
+        History::Shake(history) => vec![shake::tables::table(name, history, scaled)],
         History::Cycle(history) => cycle::tables::tables(name, history),
-        History::Escalate(history) => escalate::tables::tables(name, history),
+        History::Escalate(history) => escalate::tables::tables(name, history, scaled.as_ref()),
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
         History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
-        History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps)],
+        History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
         History::Inspect => Vec::new(),
     }
 }
@@ -385,7 +388,7 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
-        ProcedureBlock::Shake => numeric(&shake::tables::shake()),
+        ProcedureBlock::Shake => shake::tables::columns(shake::tables::shake()),
         ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Inspect => Vec::new(),
     };

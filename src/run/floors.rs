@@ -1,10 +1,12 @@
 //! The seam between the floors of a frame and the axes of the rig. The rig may carry a part of the frame; the models of the other storeys
 //! are computed here. In: targets of all floors. Out: displacement and restoring force of all floors. Integrators and procedures see
-//! floors; guard, rig and run log see the axes. If the rig carries the whole frame, or one degree of freedom, the axes are the floors.
+//! floors in numbers of the prototype; guard, rig and run log see the axes in numbers of the rig. If the rig carries the whole frame at
+//! full scale, or one degree of freedom, the axes are the floors.
 
 use super::session::Session;
 use super::stop::Stop;
 use super::{AxisReport, StepReport};
+use psd_physics::statistics::DeclaredNoise;
 use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
 use psd_rig::{Reading, RigFault, UnfinishedStep};
 
@@ -27,6 +29,13 @@ impl Session<'_> {
             || StoreyReadings::of_floors(noise, self.guard.commanded().len()),
             |assemblies| assemblies.readings(noise),
         )
+    }
+
+    /// The noise of one cell and of one transducer, in numbers of the prototype.
+    pub(crate) fn floor_noise(&self) -> DeclaredNoise {
+        let noise = self.guard.declared_noise();
+        self.assemblies()
+            .map_or(noise, |assemblies| assemblies.largest_noise(noise))
     }
 
     /// Standard deviation of the measured base shear \[N\].

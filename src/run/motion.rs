@@ -21,6 +21,8 @@ pub struct Motion {
     pub expected: Extent,
     /// The limits that stop it.
     pub limits: Limits,
+    /// The specimens that are not their storeys themselves, if there are any: all numbers are then those of the rig.
+    pub at_scale: Option<String>,
 }
 
 /// Range of displacement and force, speed and duration, SI. None: not known.
@@ -47,6 +49,7 @@ impl Motion {
             does,
             expected: Extent::default(),
             limits: plan.limits,
+            at_scale: plan.specimens_at_scale(),
         }
     }
 
@@ -83,7 +86,13 @@ impl Motion {
             .position
             .as_ref()
             .map(|position| row("position", position));
-        let first = std::iter::once(row("rig", &self.who())).chain(position);
+        let numbers = self
+            .at_scale
+            .as_ref()
+            .map(|specimens| row("numbers", &format!("of the rig: {specimens}")));
+        let first = std::iter::once(row("rig", &self.who()))
+            .chain(position)
+            .chain(numbers);
         let rest = [
             row("motion", &self.does),
             row(
@@ -250,5 +259,13 @@ mod tests {
             ..Extent::default()
         });
         assert_eq!(moved.expected, expected, "what is known stays");
+        let scaled = Motion {
+            at_scale: Some("storey 1 at scale 0.5".to_owned()),
+            ..moved
+        };
+        assert_eq!(
+            scaled.lines()[1],
+            "numbers   of the rig: storey 1 at scale 0.5"
+        );
     }
 }

@@ -1,5 +1,6 @@
-//! A real OpenSees drives a real rig: its `genericClient` with `psd rig serve` and a rig emulator behind a pseudo-terminal. In:
-//! the script beside this file, and an OpenSees for Python. Out: the closed-form motion of its integrator.
+//! A real OpenSees drives a real rig: its `genericClient` with `psd rig serve` and a rig emulator behind a pseudo-terminal. It also moves
+//! a frame with weights by itself. In: the scripts beside this file, and an OpenSees for Python. Out: the closed-form motion of its
+//! integrator; the motion of the same frame in psd.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -97,4 +98,83 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
             .any(|command| (command - position).abs() <= 1e-9)),
         "{commands:?}"
     );
+}
+
+/// A leaning column of corotational trusses carries the weights; P/h is 17 % or 7 % of the stiffness: elastic, yielding, and with a
+/// negative tangent after yield.
+#[test]
+fn a_frame_with_weights_moves_as_that_of_opensees_beside_a_leaning_column() {
+    let Some(python) = python() else { return };
+    let storeys = [(2000, 6e5, 6e3), (1500, 4.5e5, 5e3), (1000, 3.5e5, 4e3)];
+    for (ratio, weights, amplitude) in [
+        ("0.999999", [3e5, 2e5, 1e5], 0.5),
+        ("0.2", [3e5, 2e5, 1e5], 1.5),
+        ("0.05", [1e5, 8e4, 6e4], 1.5),
+    ] {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/system/opensees_p_delta.py");
+        let listed = weights.map(|weight: f64| weight.to_string()).join(",");
+        let ended = wait(Command::new(&python).arg(script).args([
+            ratio,
+            &listed,
+            "6",
+            &amplitude.to_string(),
+        ]));
+        assert_eq!(ended.code, Some(0), "{}", ended.output);
+        let line = ended.output.lines().find(|line| line.starts_with('['));
+        let theirs: Vec<[f64; 3]> = serde_json::from_str(line.unwrap()).unwrap();
+        for integrator in ["tangent", "alpha_os(alpha: 0)"] {
+            let folder = tempfile::tempdir().unwrap();
+            let sample = |sample: u32| {
+                let time = f64::from(sample) * 1e-3;
+                format!("{time},{}\n", amplitude * (9.0 * time).sin())
+            };
+            let record: String = (0..=3000).map(sample).collect();
+            let record = format!("time_s,acceleration_m_per_s2\n{record}");
+            std::fs::write(folder.path().join("ground.csv"), record).unwrap();
+            let storey = |((mass, stiffness, force), weight): ((i32, f64, f64), f64)| {
+                format!(
+                    "storey(mass: {mass} kg, height: 6 m, gravity: {weight} N, behaviour: bilinear(stiffness: \
+                     {stiffness} N/m, yield_force: {force} N, post_yield_ratio: {ratio})),"
+                )
+            };
+            let storeys: String = storeys.into_iter().zip(weights).map(storey).collect();
+            let plan = format!(
+                "specimen frame {{ storeys = [{storeys}] }}\nground motion {{ file = \"ground.csv\" }}\nshake quake {{\n  ground = \
+                 motion\n  integrator = {integrator}\n  time_step = 1 ms\n}}\nrequire \"drift\" max(quake.max_drift) < 1 m\n\
+                 report {{ formats = [csv] }}\n"
+            );
+            let file = folder.path().join("plan.psd");
+            std::fs::write(&file, plan).unwrap();
+            let run = wait(
+                Command::new(env!("CARGO_BIN_EXE_psd"))
+                    .arg("run")
+                    .arg(&file)
+                    .arg("--out")
+                    .arg(folder.path().join("run")),
+            );
+            assert_eq!(run.code, Some(0), "{}", run.output);
+            let table =
+                std::fs::read_to_string(folder.path().join("run/tables/quake.csv")).unwrap();
+            let mut lines = table
+                .lines()
+                .map(|line| line.split(',').collect::<Vec<_>>());
+            let header = lines.next().unwrap();
+            let column = |name: &str| header.iter().position(|found| *found == name).unwrap();
+            let [step, floor, computed] = ["step", "storey", "computed_m"].map(column);
+            let (mut largest, mut off) = (0.0_f64, 0.0_f64);
+            for row in lines.skip(3) {
+                let [step, floor] = [step, floor].map(|at| row[at].parse::<usize>().unwrap());
+                if step % 10 > 0 {
+                    continue;
+                }
+                let wanted = theirs[step / 10 - 1][floor - 1];
+                largest = largest.max(wanted.abs());
+                off = off.max((wanted - row[computed].parse::<f64>().unwrap()).abs());
+            }
+            assert!(
+                largest > 0.05 && off < 2e-4 * largest,
+                "{ratio}, {integrator}: off by {off} of {largest}"
+            );
+        }
+    }
 }

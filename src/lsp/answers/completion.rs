@@ -302,6 +302,10 @@ impl<'v> Items<'v, '_> {
                     self.numbers(value, Some(Dimension::TIME), offset);
                 }
             }
+            FieldType::QuantityOr(dimension, _) => {
+                self.variants(value.variants);
+                self.numbers(value, Some(dimension), offset);
+            }
             FieldType::Reference(kind) => {
                 for symbol in self.of_kind(kind) {
                     self.add(

@@ -148,6 +148,9 @@ fn value(ty: &FieldType) -> String {
         FieldType::Inner => "a model".to_owned(),
         FieldType::Inners => "several models".to_owned(),
         FieldType::Quantity(dimension) => dimension.describe(),
+        FieldType::QuantityOr(dimension, variants) => {
+            format!("{}, or {}", dimension.describe(), one_of(variants))
+        }
         FieldType::Quantities(dimension) => format!("list or range of {}", dimension.describe()),
         FieldType::Bounds { dimension, .. } => {
             format!("bound or range of {}", dimension.describe())

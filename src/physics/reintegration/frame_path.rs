@@ -7,7 +7,7 @@
 //! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
 //! bit-identical to the recorded ones.
 //!
-//! If the rig carries a part of the frame, the record is that of its axes. The computed storeys are computed again from their state at the
+//! If the rig carries a part of the frame, the record is that of its axes, in numbers of the rig. The computed storeys are computed again from their state at the
 //! start of the run.
 
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
@@ -70,9 +70,6 @@ impl FramePath {
             || (0..stiffness.order()).map(|axis| axis == 0).collect(),
             Assemblies::standing,
         );
-        let at_axes = |of_storeys: Vec<f64>| {
-            assemblies.map_or_else(|| of_storeys.clone(), |axes| axes.at_axes(&of_storeys))
-        };
         let ContinuousMotion {
             mut velocities,
             time_step,
@@ -119,10 +116,9 @@ impl FramePath {
                 )
             }
             Some(stiffnesses) => {
-                let stiffnesses = at_axes(stiffnesses);
-                let tested: Vec<StoreyReadings> = match assemblies {
-                    Some(axes) => axes.tested().map(|storey| storeys[storey]).collect(),
-                    None => storeys.to_vec(),
+                let (stiffnesses, tested) = match assemblies {
+                    Some(axes) => (axes.stiffnesses_of(stiffnesses), axes.readings_of(storeys)),
+                    None => (stiffnesses, storeys.to_vec()),
                 };
                 let targets = of_axes(|reading| &reading.target, drifts);
                 let displacements = of_axes(|reading| &reading.displacement, drifts);

@@ -3,6 +3,7 @@
 
 use super::shear_building::shears;
 use crate::specimen::Behaviour;
+use crate::statistics::DeclaredNoise;
 
 /// A structure of several floors.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,9 +35,9 @@ pub struct Storey {
     pub height: Option<f64>,
     /// Weight of its floor \[N\]; 0 if none is stated.
     pub gravity: f64,
-    /// Restoring-force model: storey shear against storey drift.
+    /// Restoring-force model: storey shear against storey drift, on the rig if it is tested.
     pub behaviour: Behaviour,
-    /// Damping on the load cells of a simulated rig, per drift velocity of the storey \[N·s/m\].
+    /// Damping on the load cells of a simulated rig, per drift velocity there \[N·s/m\].
     pub damping: f64,
     /// The same, N: friction against the drift.
     pub coulomb: f64,
@@ -44,17 +45,92 @@ pub struct Storey {
 }
 
 /// The substructure that gives the shear of a storey.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
     /// The rig. With the storey below, if that is tested too, it is one specimen, unless it stands `apart` on the strong floor.
-    Tested { apart: bool },
+    Tested { apart: bool, scale: Scale },
     /// Its model.
     Computed,
 }
 
 impl Part {
-    /// On the rig, in one specimen with the storeys beside it.
-    pub const TESTED: Self = Self::Tested { apart: false };
+    /// On the rig at full scale, in one specimen with the storeys beside it.
+    pub const TESTED: Self = Self::Tested {
+        apart: false,
+        scale: Scale::FULL,
+    };
+
+    /// The scale of the specimen on the rig; full for a computed storey.
+    #[must_use]
+    pub const fn scale(&self) -> Scale {
+        match *self {
+            Self::Tested { scale, .. } => scale,
+            Self::Computed => Scale::FULL,
+        }
+    }
+}
+
+/// The specimen on the rig beside the storey of the prototype that it represents. If stresses are those of the prototype, lengths λ mean
+/// forces λ². All numbers of a rig follow: those of its actuators, load cells and models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// λ_x: displacement on the rig over that of the prototype.
+    pub displacement: f64,
+    /// λ_f: force on the rig over that of the part of the prototype that it represents.
+    pub force: f64,
+    /// n: equal parts of the storey, of which one is on the rig. All move alike.
+    pub represents: f64,
+}
+
+impl Scale {
+    /// The storey itself.
+    pub const FULL: Self = Self {
+        displacement: 1.0,
+        force: 1.0,
+        represents: 1.0,
+    };
+
+    /// n/λ_f: shear of the storey over the force on the rig.
+    #[must_use]
+    pub fn forces(&self) -> f64 {
+        self.represents / self.force
+    }
+
+    /// 1/λ_x: drift of the storey over that on the rig.
+    #[must_use]
+    pub fn displacements(&self) -> f64 {
+        1.0 / self.displacement
+    }
+
+    /// K = n λ_x/λ_f times the stiffness on the rig \[N/m\].
+    #[must_use]
+    pub fn stiffness_of_storey(&self, on_the_rig: f64) -> f64 {
+        on_the_rig * self.forces() * self.displacement
+    }
+
+    /// The stiffness on the rig \[N/m\] of a storey of this stiffness.
+    #[must_use]
+    pub fn stiffness_on_the_rig(&self, storey: f64) -> f64 {
+        storey / (self.forces() * self.displacement)
+    }
+
+    /// The noise of the prototype where this one is of the rig: n σ/λ_f, and the resolution r/λ_x.
+    #[must_use]
+    pub fn noise_of_prototype(&self, on_the_rig: DeclaredNoise) -> DeclaredNoise {
+        DeclaredNoise {
+            force: on_the_rig.force * self.forces(),
+            resolution: on_the_rig.resolution / self.displacement,
+        }
+    }
+
+    /// The noise of the rig where this one is of the prototype.
+    #[must_use]
+    pub fn noise_on_the_rig(&self, prototype: DeclaredNoise) -> DeclaredNoise {
+        DeclaredNoise {
+            force: prototype.force / self.forces(),
+            resolution: prototype.resolution * self.displacement,
+        }
+    }
 }
 
 impl Storey {
@@ -76,13 +152,19 @@ impl Storey {
         }
     }
 
+    /// Largest tangent of its model \[N/m\], in numbers of the prototype; None if no bound is known.
+    #[must_use]
+    pub fn largest_stiffness(&self) -> Option<f64> {
+        let largest = self.behaviour.largest_stiffness()?;
+        Some(self.part.scale().stiffness_of_storey(largest))
+    }
+
     /// Stiffness that the operator of an integrator assumes \[N/m\]: the stated one of a tested storey, the largest tangent of a model.
     #[must_use]
     pub fn operator_stiffness(&self) -> f64 {
         match self.part {
             Part::Tested { .. } => self.stiffness,
             Part::Computed => self
-                .behaviour
                 .largest_stiffness()
                 .unwrap_or(self.stiffness)
                 .max(self.stiffness),

@@ -151,7 +151,7 @@ impl FrameProperties {
                 .storeys
                 .iter()
                 .map(|storey| {
-                    let largest = storey.behaviour.largest_stiffness();
+                    let largest = storey.largest_stiffness();
                     largest.unwrap_or(storey.operator_stiffness())
                 })
                 .collect();

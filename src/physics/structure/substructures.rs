@@ -2,13 +2,14 @@
 //! readings of the rig. Out: the displacements of the actuators, and the restoring forces of the floors. It knows no rig and no equation
 //! of motion.
 //!
-//! Adjacent tested storeys a…b are one assembly on the strong floor. Its axis j imposes u_j = x_j − x_(a−1), and its cell reads f_j. These
-//! forces act at the floors; the negative sum acts at floor a−1, or at the ground (Shing & Mahin 1984). Only shear is transmitted: no
+//! Adjacent tested storeys a…b are one assembly on the strong floor. Its axis j imposes u_j = λ_x (x_j − x_(a−1)), and its cell reads f_j.
+//! The forces n f_j/λ_f act at the floors; the negative sum acts at floor a−1, or at the ground (Shing & Mahin 1984). λ_x and λ_f are the
+//! scale of the specimen, which is one of n equal parts. Only shear is transmitted: no
 //! rotation and no moment is imposed. A measured floor stands on the measured floors below it. So the drift of a tested storey is the
 //! measured one, and that of a computed storey is the imposed one.
 
 use super::cell_damping::CellDamping;
-use super::frame::{Frame, Part, Storey};
+use super::frame::{Frame, Part, Scale, Storey};
 use super::shear_building::shears;
 use crate::relaxation::maxwell::Motion;
 use crate::relaxation::relaxation_state::{Deformed, RelaxationState};
@@ -30,10 +31,12 @@ enum Support {
 }
 
 /// The storeys of a frame that are on the rig, and their assemblies.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Assemblies {
     /// From the ground up.
     supports: Vec<Support>,
+    /// The same; full for a computed storey.
+    scales: Vec<Scale>,
 }
 
 /// From the ground up; empty for a frame without storeys.
@@ -44,7 +47,7 @@ fn supports(frame: &Frame) -> Vec<Support> {
             stood = false;
             Support::Computed
         }
-        Part::Tested { apart } => {
+        Part::Tested { apart, .. } => {
             let joined = std::mem::replace(&mut stood, true) && !apart;
             if joined {
                 Support::Below
@@ -56,6 +59,12 @@ fn supports(frame: &Frame) -> Vec<Support> {
     frame.storeys.iter().map(support).collect()
 }
 
+/// The scale of every storey from the ground up; full for a computed one.
+fn scales(frame: &Frame) -> Vec<Scale> {
+    let scale = |storey: &Storey| storey.part.scale();
+    frame.storeys.iter().map(scale).collect()
+}
+
 /// The storeys on the rig from the ground up, each with whether it stands on the strong floor.
 pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
     let storeys = frame.storeys.iter().zip(supports(frame));
@@ -63,6 +72,30 @@ pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
         Support::Computed => None,
         support => Some((storey, support == Support::StrongFloor)),
     })
+}
+
+/// Stiffness of the specimens at their axes, row by row, in numbers of the rig \[N/m\].
+#[must_use]
+pub fn stiffness_on_the_rig(frame: &Frame) -> Vec<Vec<f64>> {
+    if Assemblies::of(frame).is_none() {
+        return frame.stiffness.clone();
+    }
+    let storeys: Vec<(f64, bool)> = on_the_rig(frame)
+        .map(|(storey, stands)| {
+            let stiffness = storey.part.scale().stiffness_on_the_rig(storey.stiffness);
+            (stiffness, stands)
+        })
+        .collect();
+    let mut rows = vec![vec![0.0; storeys.len()]; storeys.len()];
+    for (axis, (stiffness, stands)) in storeys.into_iter().enumerate() {
+        rows[axis][axis] += stiffness;
+        if !stands {
+            rows[axis - 1][axis - 1] += stiffness;
+            rows[axis - 1][axis] = -stiffness;
+            rows[axis][axis - 1] = -stiffness;
+        }
+    }
+    rows
 }
 
 /// Drifts of the storeys on the rig, from the displacements or velocities of their axes, each with whether its storey stands on the strong
@@ -74,7 +107,7 @@ pub fn assembly_drifts(axes: impl Iterator<Item = (f64, bool)>) -> impl Iterator
     })
 }
 
-/// The readings that the shear and the drift of a storey are computed from.
+/// The readings that the shear and the drift of a storey are computed from, in numbers of the prototype.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoreyReadings {
     /// That of one load cell and one transducer.
@@ -110,20 +143,20 @@ impl StoreyReadings {
 }
 
 impl Assemblies {
-    /// None if the whole frame is one specimen on the rig.
+    /// None if the whole frame is one specimen on the rig at full scale.
     #[must_use]
     pub fn of(frame: &Frame) -> Option<Self> {
-        let supports = supports(frame);
+        let (supports, scales) = (supports(frame), scales(frame));
         let whole = |(storey, support): (usize, &Support)| {
             let as_one = if storey == 0 {
                 Support::StrongFloor
             } else {
                 Support::Below
             };
-            *support == as_one
+            *support == as_one && scales[storey] == Scale::FULL
         };
         let is_whole = supports.iter().enumerate().all(whole);
-        (!is_whole).then_some(Self { supports })
+        (!is_whole).then_some(Self { supports, scales })
     }
 
     /// So many floors, as one specimen on the rig.
@@ -132,6 +165,7 @@ impl Assemblies {
         let above = std::iter::repeat_n(Support::Below, floors.saturating_sub(1));
         Self {
             supports: std::iter::once(Support::StrongFloor).chain(above).collect(),
+            scales: vec![Scale::FULL; floors.max(1)],
         }
     }
 
@@ -185,7 +219,20 @@ impl Assemblies {
         lowest.unwrap_or(0).checked_sub(1)
     }
 
-    /// Displacements or velocities of the floors become those of the tested storeys in their assemblies; 0 for computed ones.
+    /// The scale of the specimen at each axis.
+    #[must_use]
+    pub fn scales(&self) -> Vec<Scale> {
+        self.at_axes(&self.scales)
+    }
+
+    /// Whether a specimen on the rig is another one than its storeys.
+    #[must_use]
+    pub fn is_scaled(&self) -> bool {
+        self.scales.iter().any(|scale| *scale != Scale::FULL)
+    }
+
+    /// Displacements or velocities of the floors become those of the tested storeys in their assemblies; 0 for computed ones. The numbers
+    /// are those of the prototype.
     #[must_use]
     pub fn in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
         let (mut below, mut base) = (0.0, 0.0);
@@ -204,7 +251,8 @@ impl Assemblies {
         relative.collect()
     }
 
-    /// The restoring forces of the floors become those of the actuators at the tested storeys \[N\]; 0 for computed ones.
+    /// The restoring forces of the floors become those of the actuators at the tested storeys \[N\]; 0 for computed ones. The numbers are
+    /// those of the prototype.
     #[must_use]
     pub fn forces_in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
         let mut shear = vec![0.0; floors.len()];
@@ -220,7 +268,7 @@ impl Assemblies {
 
     /// The entries of the tested storeys; none without entries.
     #[must_use]
-    pub fn at_axes(&self, storeys: &[f64]) -> Vec<f64> {
+    pub fn at_axes<T: Copy>(&self, storeys: &[T]) -> Vec<T> {
         let entry = |storey: usize| storeys.get(storey).copied();
         self.tested().filter_map(entry).collect()
     }
@@ -228,16 +276,34 @@ impl Assemblies {
     /// Displacements of the axes \[m\], or their velocities \[m/s\], from those of the floors.
     #[must_use]
     pub fn axes_of(&self, floors: &[f64]) -> Vec<f64> {
-        self.at_axes(&self.in_assemblies(floors))
+        self.on_the_rig(self.in_assemblies(floors), |scale, prototype| {
+            prototype * scale.displacement
+        })
     }
 
     /// Forces of the axes \[N\], from the restoring forces of the floors.
     #[must_use]
     pub fn forces_of(&self, floors: &[f64]) -> Vec<f64> {
-        self.at_axes(&self.forces_in_assemblies(floors))
+        self.on_the_rig(self.forces_in_assemblies(floors), |scale, prototype| {
+            prototype / scale.forces()
+        })
     }
 
-    /// The readings of every storey, if each cell and each transducer has this noise.
+    /// Stiffnesses of the storeys at the axes on the rig \[N/m\], from those of all storeys of the prototype.
+    #[must_use]
+    pub fn stiffnesses_of(&self, storeys: Vec<f64>) -> Vec<f64> {
+        self.on_the_rig(storeys, Scale::stiffness_on_the_rig)
+    }
+
+    /// The numbers of the prototype, one per storey, become those of the axes.
+    fn on_the_rig(&self, mut storeys: Vec<f64>, to: fn(&Scale, f64) -> f64) -> Vec<f64> {
+        for (value, scale) in storeys.iter_mut().zip(&self.scales) {
+            *value = to(scale, *value);
+        }
+        self.at_axes(&storeys)
+    }
+
+    /// The readings of every storey in numbers of the prototype, if each cell and each transducer of the rig has this noise.
     #[must_use]
     pub fn readings(&self, noise: DeclaredNoise) -> Vec<StoreyReadings> {
         #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
@@ -245,7 +311,7 @@ impl Assemblies {
             noise: if self.supports[storey] == Support::Computed {
                 DeclaredNoise::NONE
             } else {
-                noise
+                self.scales[storey].noise_of_prototype(noise)
             },
             cells: self.shear_of(storey).len() as f64,
             is_difference: self.supports[storey] == Support::Below,
@@ -258,15 +324,39 @@ impl Assemblies {
         self.tested().position(|tested| tested == storey)
     }
 
-    /// The axes of which the measured displacement of a floor is the sum.
+    /// The readings of the storeys at the axes in numbers of the rig, from those of all storeys of the prototype.
     #[must_use]
-    pub fn positions_of(&self, floor: usize) -> Vec<usize> {
+    pub fn readings_of(&self, storeys: &[StoreyReadings]) -> Vec<StoreyReadings> {
+        let tested = self.at_axes(storeys).into_iter().zip(self.scales());
+        let on_the_rig = tested.map(|(readings, scale)| StoreyReadings {
+            noise: scale.noise_on_the_rig(readings.noise),
+            ..readings
+        });
+        on_the_rig.collect()
+    }
+
+    /// The noise of a cell and of a transducer in numbers of the prototype, at the storey where it is largest.
+    #[must_use]
+    pub fn largest_noise(&self, noise: DeclaredNoise) -> DeclaredNoise {
+        let largest = |factor: fn(&Scale) -> f64| {
+            let factors = self.tested().map(|storey| factor(&self.scales[storey]));
+            factors.reduce(f64::max).unwrap_or(1.0)
+        };
+        DeclaredNoise {
+            force: noise.force * largest(Scale::forces),
+            resolution: noise.resolution * largest(Scale::displacements),
+        }
+    }
+
+    /// The axes of which the measured displacement of a floor is the sum, each with the factor from the rig to the prototype.
+    #[must_use]
+    pub fn positions_of(&self, floor: usize) -> Vec<(usize, f64)> {
         let (mut axes, mut next) = (Vec::new(), Some(floor));
         while let Some(floor) = next {
             next = match self.axis_of(floor) {
                 None => floor.checked_sub(1),
                 Some(axis) => {
-                    axes.push(axis);
+                    axes.push((axis, self.scales[floor].displacements()));
                     self.base_of(floor)
                 }
             };
@@ -274,15 +364,16 @@ impl Assemblies {
         axes
     }
 
-    /// The axes of which the restoring force of a floor is the sum, each with the sign of its force: its own, and those of the assembly that
-    /// stands on the floor.
+    /// The axes of which the restoring force of a floor is the sum, each with the factor from the rig to the prototype and the sign of its
+    /// force: its own, and those of the assembly that stands on the floor.
     #[must_use]
     pub fn forces_at(&self, floor: usize) -> Vec<(usize, f64)> {
-        let own = self.axis_of(floor).map(|axis| (axis, 1.0));
+        let forces = |storey: usize| self.scales[storey].forces();
+        let own = self.axis_of(floor).map(|axis| (axis, forces(floor)));
         let standing = self.tested().enumerate();
         let standing = standing.filter(|(_, storey)| self.base_of(*storey) == Some(floor));
         own.into_iter()
-            .chain(standing.map(|(axis, _)| (axis, -1.0)))
+            .chain(standing.map(|(axis, storey)| (axis, -forces(storey))))
             .collect()
     }
 
@@ -382,7 +473,9 @@ impl Substructures {
                 (below + storey.drift, storey.shear, floor.checked_sub(1))
             } else {
                 let (displacement, force) = axes.next().unwrap_or((&0.0, &0.0));
-                (base + displacement, *force, base_floor)
+                let scale = &self.assemblies.scales[floor];
+                let displacement = displacement / scale.displacement;
+                (base + displacement, force * scale.forces(), base_floor)
             };
             displacement.push(position);
             force[floor] += shear;

@@ -28,6 +28,10 @@ pub const ACCELERATION: Column = column("acceleration_m_per_s2", Dimension::ACCE
 pub const DRIFT: Column = column("drift_m", Dimension::LENGTH);
 pub const STOREY_SHEAR: Column = column("storey_shear_n", Dimension::FORCE);
 pub const SPRING_SHEAR: Column = column("spring_shear_n", Dimension::FORCE);
+/// Of the axis at the storey, in numbers of the rig. They are there if the scale of a storey is not 1.
+pub const COMMAND_ON_THE_RIG: Column = column("command_rig_m", Dimension::LENGTH);
+pub const DISPLACEMENT_ON_THE_RIG: Column = column("displacement_rig_m", Dimension::LENGTH);
+pub const FORCE_ON_THE_RIG: Column = column("force_rig_n", Dimension::FORCE);
 pub const STOREY_ENERGY: Column = column("storey_energy_j", Dimension::ENERGY);
 pub const ENERGY: Column = column("energy_j", Dimension::ENERGY);
 pub const RESTORING_ENERGY: Column = column("restoring_energy_j", Dimension::ENERGY);

@@ -44,6 +44,15 @@ impl Field {
         Self::new(name, FieldType::Quantity(dimension), doc)
     }
 
+    pub const fn quantity_or(
+        name: &'static str,
+        dimension: Dimension,
+        variants: &'static [Variant],
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::QuantityOr(dimension, variants), doc)
+    }
+
     pub const fn quantities(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self::new(name, FieldType::Quantities(dimension), doc)
     }

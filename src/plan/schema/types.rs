@@ -78,6 +78,8 @@ pub enum FieldType {
     Inners,
     /// One number with its unit.
     Quantity(Dimension),
+    /// One number with its unit, or one of these variants.
+    QuantityOr(Dimension, &'static [Variant]),
     /// A list, or a range with a step.
     Quantities(Dimension),
     /// A range, or a bound: `b` means −b .. b if `symmetric`, else 0 .. b.
@@ -134,7 +136,10 @@ impl FieldType {
     #[must_use]
     pub const fn variants(self) -> &'static [Variant] {
         match self {
-            Self::Choice(variants) | Self::Choices(variants) | Self::Inputs(variants) => variants,
+            Self::Choice(variants)
+            | Self::Choices(variants)
+            | Self::Inputs(variants)
+            | Self::QuantityOr(_, variants) => variants,
             _ => &[],
         }
     }
@@ -288,6 +293,7 @@ impl Field {
     pub const fn dimension(&self) -> Option<Dimension> {
         match self.ty {
             FieldType::Quantity(dimension)
+            | FieldType::QuantityOr(dimension, _)
             | FieldType::Quantities(dimension)
             | FieldType::Bounds { dimension, .. }
             | FieldType::Interval(dimension) => Some(dimension),

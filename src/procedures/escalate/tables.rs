@@ -5,6 +5,7 @@ use std::iter::once;
 use crate::procedures::impact;
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::procedures::impact::block as results;
 use psd_plan::record::{EscalateHistory, Rest, SeriesImpact};
 use psd_plan::schema::columns::{self, column};
@@ -126,12 +127,16 @@ pub(crate) fn columns() -> Vec<Column> {
 }
 
 /// The table of the impacts, that of each impact under a numbered name, and that of the storeys.
-pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> {
+pub(crate) fn tables<'a>(
+    name: String,
+    history: &'a EscalateHistory,
+    scaled: Option<&Assemblies>,
+) -> Vec<Table<'a>> {
     let tables = history.impacts.iter().zip(1..).map(|(impact, number)| {
         let name = format!("{name}_{number}");
-        impact::tables::table(name, &impact.history)
+        impact::tables::table(name, &impact.history, scaled.cloned())
     });
-    let tables: Vec<Table<'_>> = tables.collect();
+    let tables: Vec<Table<'a>> = tables.collect();
     let has_storeys = history
         .storeys()
         .next()

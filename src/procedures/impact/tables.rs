@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::procedures::shake;
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
 use crate::report::tables::{Table, numeric, written};
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::record::{ImpactHistory, ImpactStep, StruckFrame};
 use psd_plan::schema::{Column, columns};
 
@@ -45,19 +46,25 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
 
 /// The numeric columns of both tables.
 pub(crate) fn columns() -> Vec<Column> {
-    [numeric(STEPS), numeric(&shake::tables::struck())].concat()
+    let of_floors = shake::tables::columns(shake::tables::struck());
+    [numeric(STEPS), of_floors].concat()
 }
 
 /// The table under this name.
-pub(crate) fn table(name: String, history: &ImpactHistory) -> Table<'_> {
+pub(crate) fn table(
+    name: String,
+    history: &ImpactHistory,
+    scaled: Option<Assemblies>,
+) -> Table<'_> {
     let Some(StruckFrame { floors, .. }) = &history.frame else {
         return Table::of(name, &history.steps, |steps| written(STEPS, steps));
     };
     let storeys = floors
         .first()
         .map_or(1, |floors| floors.floors.computed.len());
-    let columns = |range: Range<usize>| {
-        shake::tables::storey_impact(&history.steps[range.clone()], &floors[range])
+    let columns = move |range: Range<usize>| {
+        let steps = &history.steps[range.clone()];
+        shake::tables::storey_impact(steps, &floors[range], scaled.as_ref())
     };
     Table::of_steps(name, floors.len(), storeys, columns)
 }

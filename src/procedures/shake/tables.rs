@@ -1,12 +1,14 @@
 //! Tables of floors, one row per step and storey: for ground motion with its record, for an impact on a storey with striker and contact,
 //! and for an unloading. In: steps. Out: columns in SI. Quantities of the whole frame are the same in every row of a step; the tracking
-//! energy is that of each floor.
+//! energy is that of each floor. If a specimen on the rig has a scale, the numbers of each axis are in columns beside those of the prototype.
 
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional, Text};
-use crate::report::tables::{Column, Table, written};
+use crate::report::tables::{Column, Table, numeric, written};
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::record::{
     FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep,
 };
+use psd_plan::schema::Column as SchemaColumn;
 use psd_plan::schema::columns::{self, column};
 use psd_text::units::Dimension;
 
@@ -19,6 +21,8 @@ pub(crate) struct FloorRow<'a, S> {
     /// Net of P-Δ.
     shear: f64,
     spring_shear: f64,
+    /// Command and measured displacement \[m\], and force \[N\] of the axis at the storey on the rig.
+    on_the_rig: Option<[f64; 3]>,
 }
 
 /// An impact on a storey: the step of the striker, and that of the floors.
@@ -27,11 +31,23 @@ pub(crate) struct StruckStep<'a> {
     floors: &'a FloorStep,
 }
 
-/// The storeys of a step after each other, from the ground up.
+/// The storeys of a step after each other, from the ground up; `scaled` if a specimen on the rig has a scale.
 fn rows<'a, F: Floors + 'a, S>(
     steps: impl Iterator<Item = (&'a F, &'a S)>,
+    scaled: Option<&Assemblies>,
 ) -> Vec<FloorRow<'a, S>> {
     let storeys = |(floors, step): (&'a F, &'a S)| {
+        let mut on_the_rig = vec![None; floors.command().len()];
+        if let Some(assemblies) = scaled {
+            let axes = assemblies
+                .axes_of(floors.command())
+                .into_iter()
+                .zip(assemblies.axes_of(floors.measured()))
+                .zip(assemblies.forces_of(floors.restoring_force()));
+            for (storey, ((command, displacement), force)) in assemblies.tested().zip(axes) {
+                on_the_rig[storey] = Some([command, displacement, force]);
+            }
+        }
         let shears = floors.net_shear().into_iter().zip(floors.shear());
         let storeys = floors.drift().into_iter().zip(shears).enumerate();
         storeys.map(move |(floor, (drift, (shear, spring_shear)))| FloorRow {
@@ -41,14 +57,35 @@ fn rows<'a, F: Floors + 'a, S>(
             drift,
             shear,
             spring_shear,
+            on_the_rig: on_the_rig[floor],
         })
     };
     steps.flat_map(storeys).collect()
 }
 
-/// The rows of steps that contain their floors.
-fn rows_of<S: Floors>(steps: &[S]) -> Vec<FloorRow<'_, S>> {
-    rows(steps.iter().map(|step| (step, step)))
+/// The columns of steps that contain their floors.
+fn written_steps<'a, S: Floors>(
+    columns: Vec<TableColumn<FloorRow<'a, S>>>,
+    steps: &'a [S],
+    scaled: Option<&Assemblies>,
+) -> Vec<Column> {
+    let rows = rows(steps.iter().map(|step| (step, step)), scaled);
+    written_rows(columns, &rows, scaled)
+}
+
+/// The columns of these rows: those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale.
+fn written_rows<'a, S>(
+    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
+    rows: &[FloorRow<'a, S>],
+    scaled: Option<&Assemblies>,
+) -> Vec<Column> {
+    let weighs = rows
+        .first()
+        .is_some_and(|row| !row.floors.gravity_force.is_empty());
+    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
+    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
+    let of_rig = scaled.map_or_else(Vec::new, |_| on_the_rig());
+    written(&joined([columns, of_rig]), rows)
 }
 
 /// The number of the storey, from 1.
@@ -80,19 +117,6 @@ fn spring_shear<'a, S>() -> TableColumn<FloorRow<'a, S>> {
     Number(columns::SPRING_SHEAR, |row| row.spring_shear)
 }
 
-/// The columns of a frame; those of P-Δ only if a floor has a weight.
-fn of_frame<'a, S>(
-    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
-    rows: &[FloorRow<'a, S>],
-) -> Vec<Column> {
-    let weighs = rows
-        .first()
-        .is_some_and(|row| !row.floors.gravity_force.is_empty());
-    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
-    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
-    written(&columns, rows)
-}
-
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
 fn forces<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
@@ -102,6 +126,26 @@ fn forces<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
         Number(columns::DRIFT, |row| row.drift),
         Number(columns::STOREY_SHEAR, |row| row.shear),
     ]
+}
+
+/// The axes, in numbers of the rig; empty for a computed storey.
+pub(crate) fn on_the_rig<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
+    vec![
+        Optional(columns::COMMAND_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[command, ..]| command)
+        }),
+        Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[_, displacement, _]| displacement)
+        }),
+        Optional(columns::FORCE_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[.., force]| force)
+        }),
+    ]
+}
+
+/// The numeric columns of a table of floors, also those of the rig.
+pub(crate) fn columns<S>(columns: Vec<TableColumn<FloorRow<'_, S>>>) -> Vec<SchemaColumn> {
+    numeric(&joined([columns, on_the_rig()]))
 }
 
 /// The tracking of the floors.
@@ -117,13 +161,13 @@ fn tracking<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
 }
 
 /// The table of a ground-motion test under this name.
-pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
+pub(crate) fn table(name: String, history: &ShakeHistory, scaled: Option<Assemblies>) -> Table<'_> {
     let storeys = history
         .steps
         .first()
         .map_or(1, |step| step.floors.computed.len());
-    Table::of_steps(name, history.steps.len(), storeys, |range| {
-        of_frame(shake(), &rows_of(&history.steps[range]))
+    Table::of_steps(name, history.steps.len(), storeys, move |range| {
+        written_steps(shake(), &history.steps[range], scaled.as_ref())
     })
 }
 
@@ -221,14 +265,18 @@ pub(crate) fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
 }
 
 /// The table of an impact on a storey.
-pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<Column> {
+pub(crate) fn storey_impact(
+    steps: &[ImpactStep],
+    floors: &[FloorStep],
+    scaled: Option<&Assemblies>,
+) -> Vec<Column> {
     let steps: Vec<StruckStep<'_>> = floors
         .iter()
         .zip(steps)
         .map(|(floors, impact)| StruckStep { impact, floors })
         .collect();
-    let rows = rows(steps.iter().map(|step| (step.floors, step)));
-    of_frame(struck(), &rows)
+    let rows = rows(steps.iter().map(|step| (step.floors, step)), scaled);
+    written_rows(struck(), &rows, scaled)
 }
 
 /// The columns of an unloading.
@@ -248,8 +296,8 @@ pub(crate) fn unloaded<'a>() -> Vec<TableColumn<FloorRow<'a, UnloadStep>>> {
 }
 
 /// The table of an unloading; step 0 is its start.
-pub(crate) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
-    written(&unloaded(), &rows_of(steps))
+pub(crate) fn unloading(steps: &[UnloadStep], scaled: Option<&Assemblies>) -> Vec<Column> {
+    written_steps(unloaded(), steps, scaled)
 }
 
 fn joined<T, const N: usize>(parts: [Vec<TableColumn<T>>; N]) -> Vec<TableColumn<T>> {

@@ -159,7 +159,7 @@ pub(crate) fn to_rest(
     let (start, mut at) = session.floors_at_rest()?;
     let secants = vec![None; at.force.len()];
     steps.push(step_of(before, start, &at, secants, session));
-    let noise = session.guard.declared_noise();
+    let noise = session.floor_noise();
     let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let by_readings = within.is_none();

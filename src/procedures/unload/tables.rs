@@ -3,6 +3,7 @@
 use crate::procedures::shake;
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::record::UnloadStep;
 use psd_plan::schema::{Column, columns};
 
@@ -18,7 +19,8 @@ const MOVES: &[TableColumn<UnloadStep>] = &[
 
 /// The numeric columns of both tables.
 pub(crate) fn columns() -> Vec<Column> {
-    [numeric(MOVES), numeric(&shake::tables::unloaded())].concat()
+    let of_floors = shake::tables::columns(shake::tables::unloaded());
+    [numeric(MOVES), of_floors].concat()
 }
 
 /// The table of the moves of one degree of freedom, under this name.
@@ -27,6 +29,12 @@ pub(crate) fn of_moves(name: String, steps: &[UnloadStep]) -> Table<'_> {
 }
 
 /// The table of the floors of a frame, under this name.
-pub(crate) fn of_floors(name: String, steps: &[UnloadStep]) -> Table<'_> {
-    Table::of(name, steps, shake::tables::unloading)
+pub(crate) fn of_floors(
+    name: String,
+    steps: &[UnloadStep],
+    scaled: Option<Assemblies>,
+) -> Table<'_> {
+    Table::of(name, steps, move |steps| {
+        shake::tables::unloading(steps, scaled.as_ref())
+    })
 }

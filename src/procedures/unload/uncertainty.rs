@@ -20,7 +20,7 @@ pub(crate) const UNCERTAINTY: &str = "In closed form, from the unloaded position
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const SIGNIFICANT_FRACTION: f64 = 1e-6;
 
-/// Errors of one reading of an axis: standard deviations \[N\] and \[m\].
+/// Errors of one reading of an axis on the rig: standard deviations \[N\] and \[m\].
 type Errors = Vec<(f64, f64)>;
 
 impl UncertainRun<'_> {
@@ -70,9 +70,12 @@ impl UncertainRun<'_> {
         let most = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(0.0, |most: f64, value| most.max(value.abs()))
         };
-        let explained = NOISE * most(&mut errors.iter().map(|error| error.0));
+        let scales = axes.scales();
+        let of_prototype = || errors.iter().zip(&scales);
         let explained =
-            explained.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
+            NOISE * most(&mut of_prototype().map(|(error, scale)| error.0 * scale.forces()));
+        let displaced = of_prototype().map(|(error, scale)| error.1 * scale.displacements());
+        let explained = explained.max(unloading.force_of(most(&mut { displaced })));
         if !exact && most(&mut rest.force.iter().copied()) > explained {
             let UncertainRun {
                 procedure, impact, ..
@@ -129,7 +132,7 @@ impl UncertainRun<'_> {
         let instruments = self.instruments(errors.len());
         let displacements = axes.axes_of(&rest.displacement);
         let forces = axes.forces_of(&rest.force);
-        let of_position = |axis: usize| {
+        let of_position = |(axis, factor): (usize, f64)| {
             let calibration = self.whole.rig.calibration_of(axis);
             let [_, below] = instruments.below(axis);
             [
@@ -143,8 +146,9 @@ impl UncertainRun<'_> {
                 ),
                 (self.reading(axis), errors[axis].1),
             ]
+            .map(|(source, amount)| (source, factor * amount))
         };
-        let of_cell = |(axis, sign): (usize, f64)| {
+        let of_cell = |(axis, factor): (usize, f64)| {
             let calibration = self.whole.rig.calibration_of(axis);
             let [below, _] = instruments.below(axis);
             [
@@ -156,7 +160,7 @@ impl UncertainRun<'_> {
                 (Source::ForceZero(axis), calibration.zero()),
                 (self.reading(errors.len() + axis), errors[axis].0),
             ]
-            .map(|(source, amount)| (source, sign * amount))
+            .map(|(source, amount)| (source, factor * amount))
         };
         let floors = || 0..rest.force.len();
         let positions = |floor: usize| axes.positions_of(floor).into_iter().flat_map(of_position);
@@ -204,14 +208,17 @@ fn shown(
     };
     let farthest = moves().map(change).fold(0.0, f64::max);
     // The noise of a shear is that of all cells above it; the noise of a storey drift is that of two positions.
+    let scales = axes.scales();
     let of_storey = |storey: usize| {
+        let of_cell = |axis: usize| errors[axis].0 * scales[axis].forces();
         let force = axes
             .shear_of(storey)
             .into_iter()
-            .map(|axis| errors[axis].0 * errors[axis].0)
+            .map(|axis| of_cell(axis) * of_cell(axis))
             .sum::<f64>()
             .sqrt();
-        let of_position = |axis: Option<usize>| axis.map_or(0.0, |axis| errors[axis].1);
+        let displaced = |axis: usize| errors[axis].1 * scales[axis].displacements();
+        let of_position = |axis: Option<usize>| axis.map_or(0.0, displaced);
         let [own, below] = axes.drift_of(storey).map(of_position);
         (force, own.hypot(below))
     };

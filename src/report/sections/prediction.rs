@@ -19,6 +19,9 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::paragraph(wording::model(capitalised(
         &prediction.model,
     ))));
+    if source.run.plan.specimens_at_scale().is_some() {
+        body.push(Block::paragraph(wording::OF_THE_RIG));
+    }
     if let Some(stopped) = &prediction.stopped {
         body.push(Block::paragraph(stopped.as_str()));
     }

@@ -62,7 +62,8 @@ pub(super) fn of_run<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
 }
 
 fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
-    let of_procedures = run.record.procedures.iter().flat_map(procedures::tables);
+    let tables = |procedure| procedures::tables(run.plan, procedure);
+    let of_procedures = run.record.procedures.iter().flat_map(tables);
     let zero_drift = run.record.drift.as_ref().map(zero_drift_table);
     of_procedures.chain(zero_drift).collect()
 }

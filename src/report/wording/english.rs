@@ -24,6 +24,7 @@ wording! {
     mod particulars {
         PLAN = "Plan";
         SUBSTRUCTURES = "Substructures";
+        NUMBERS = "Numbers";
         LABORATORY = "Laboratory";
         ADDRESS = "Address";
         PLACE = "Location of the test";
@@ -150,6 +151,7 @@ wording! {
         LIMIT_COLUMNS = ["Limit", "Allowed", "Reached", "Margin"];
         PROCEDURE_COLUMNS = ["Procedure", "Kind", "Displacement", "Force", "Fastest", "Steps", "Rig time"];
         REQUIREMENT_COLUMNS = ["Requirement, as predicted", "Verdict"];
+        OF_THE_RIG = "Displacement, force and speed are numbers of the rig. Requirements are those of the prototype.";
         fn model(model) = "{model}. The following values were not measured.";
         AND_NOT_AGAIN = "and not again";
         fn and_again(between) = "and again {between} later";
@@ -339,6 +341,7 @@ wording! {
         NOT_MEASURED = " · stated, not measured";
         FROM_A_FILE = " · from a file of the plan";
         LIMITS = "Limits";
+        LIMITS_OF_THE_RIG = "Limits, in numbers of the rig";
         NO_LIMIT = "No limit applied.";
         PARAMETERS = "Parameters";
         SET_FOR_THIS_RUN = " (set for this run)";

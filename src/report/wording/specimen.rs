@@ -7,10 +7,11 @@ use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
 use psd_physics::structure::substructures::Assemblies;
+use psd_plan::scaled::{at_scale, numbers_on_the_rig, storeys};
 use psd_plan::schema::behaviours;
 use psd_plan::{
-    Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Pinching,
-    Portal, Sections, Unloading,
+    Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Part,
+    Pinching, Portal, Sections, Unloading,
 };
 use psd_text::units::Dimension;
 
@@ -42,16 +43,20 @@ pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, Str
     rows
 }
 
-/// The storeys that are tested, and those that are computed. None if the whole frame is one specimen on the rig.
+/// The storeys that are tested, and those that are computed. None if the whole frame is one specimen on the rig at full scale.
 #[must_use]
 pub fn substructures(frame: &Frame) -> Option<String> {
     let assemblies = Assemblies::of(frame)?;
     let specimens = assemblies.specimens();
+    let scale = |specimen: &[usize]| at_scale(&frame.storeys[specimen[0]].part.scale());
     let tested = match &specimens[..] {
         [] => "nothing is tested".to_owned(),
-        [one] => format!("{} tested", storeys(one)),
+        [one] => format!("{} tested{}", storeys(one), scale(one)),
         several => {
-            let several: Vec<String> = several.iter().map(|one| storeys(one)).collect();
+            let several: Vec<String> = several
+                .iter()
+                .map(|one| storeys(one) + &scale(one))
+                .collect();
             format!("{} tested, each a specimen", several.join(" / "))
         }
     };
@@ -86,22 +91,35 @@ pub fn measured(what: &str, frame: Option<&Frame>) -> String {
     }
 }
 
-/// The assumptions of a test of which a part is computed.
-pub const SUBSTRUCTURES_ASSUMED: &str = "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen. The \
- models of computed storeys are stated and were not measured.";
+/// The assumptions of a test of which a part is computed, or a specimen has a scale.
+#[must_use]
+pub fn assumed(frame: &Frame) -> String {
+    let has = |is: fn(&Part) -> bool| frame.storeys.iter().any(|storey| is(&storey.part));
+    let assumed = [
+        (true, SHEAR_ALONE),
+        (has(|part| *part == Part::Computed), MODELS_STATED),
+        (has(|part| part.scale().force != 1.0), STRESSES_ALIKE),
+        (has(|part| part.scale().represents > 1.0), PARTS_MOVE_ALIKE),
+    ];
+    let sentences = assumed.into_iter().filter(|(holds, _)| *holds);
+    let sentences: Vec<&str> = sentences.map(|(_, sentence)| sentence).collect();
+    sentences.join(" ")
+}
 
-/// `storey 1`, or `storeys 1, 2`.
-fn storeys(storeys: &[usize]) -> String {
-    let numbers: Vec<String> = storeys
-        .iter()
-        .map(|storey| (storey + 1).to_string())
-        .collect();
-    let word = if storeys.len() == 1 {
-        "storey"
-    } else {
-        "storeys"
-    };
-    format!("{word} {}", numbers.join(", "))
+const SHEAR_ALONE: &str =
+    "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen.";
+const MODELS_STATED: &str = "The models of computed storeys are stated and were not measured.";
+const STRESSES_ALIKE: &str = "A specimen at a scale behaves as its storey: forces and displacements differ by the stated factors alone.";
+const PARTS_MOVE_ALIKE: &str =
+    "The equal parts of a storey behave alike: one of them is on the rig.";
+
+/// The numbers of the report of a test of which a specimen has a scale. None for any other test.
+#[must_use]
+pub fn numbers(frame: &Frame) -> Option<String> {
+    let on_the_rig = numbers_on_the_rig(frame)?;
+    Some(format!(
+        "results and requirements are those of the prototype; limits and axes are those of the rig ({on_the_rig})"
+    ))
 }
 
 /// A restoring-force model with its parameters as one string.
@@ -528,7 +546,7 @@ fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static s
 #[cfg(test)]
 mod tests {
     use super::*;
-    use psd_plan::{Part, Storey};
+    use psd_plan::Storey;
 
     #[test]
     fn a_caption_calls_no_computed_force_measured() {

@@ -79,7 +79,8 @@ impl Springs {
         }
         let storey = |(storey, stands): (&psd_plan::Storey, bool)| {
             let damper = CellDamping::new(storey.damping, storey.coulomb);
-            Storey::new(&storey.behaviour, storey.stiffness, damper, stands)
+            let stiffness = storey.part.scale().stiffness_on_the_rig(storey.stiffness);
+            Storey::new(&storey.behaviour, stiffness, damper, stands)
         };
         Self::Storeys(on_the_rig(frame).map(storey).collect())
     }

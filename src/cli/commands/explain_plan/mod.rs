@@ -204,14 +204,13 @@ impl<'a> DryRun<'a> {
                 .into_iter()
                 .map(|text| vec!["P-Δ".to_owned(), text])
                 .collect();
-            if let Some(text) = frame.and_then(specimen_text::substructures) {
-                rows.extend([
-                    vec!["substructures".to_owned(), text],
-                    vec![
-                        "assumed".to_owned(),
-                        specimen_text::SUBSTRUCTURES_ASSUMED.to_owned(),
-                    ],
-                ]);
+            if let Some((frame, text)) =
+                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
+            {
+                rows.push(vec!["substructures".to_owned(), text]);
+                let numbers = specimen_text::numbers(frame);
+                rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
+                rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }
             if !rows.is_empty() {
                 section(&format!("Specimen {}", specimen.name), rows);
@@ -219,7 +218,9 @@ impl<'a> DryRun<'a> {
         }
         let lagging = tracking::lagging(self.plan);
         section("Start", start::rows(self.plan));
-        section("Motion", self.motions());
+        let of_rig = self.plan.specimens_at_scale();
+        let of_rig = of_rig.map_or("", |_| ", in numbers of the rig");
+        section(&format!("Motion{of_rig}"), self.motions());
         for (index, (procedure, planned)) in self
             .record
             .procedures
@@ -296,7 +297,7 @@ impl<'a> DryRun<'a> {
                 );
             }
         }
-        section("Limits", self.limits());
+        section(&format!("Limits{of_rig}"), self.limits());
         section("Zeros", zero_drift::rows(self.plan, &self.record));
         section("Requirements, as predicted", self.requirements());
         section("Published numbers, as predicted", self.reproductions());

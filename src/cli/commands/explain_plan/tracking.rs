@@ -7,6 +7,8 @@
 
 use psd::procedures::stepping::tracking::delay;
 use psd::run::{self, Keep, Unwatched};
+use psd_physics::statistics::DeclaredNoise;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::procedures::impact::block::MASS;
 use psd_plan::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
@@ -245,7 +247,7 @@ fn late_by(late: f64, unsettled: f64) -> Vec<String> {
     ]
 }
 
-/// δ \[m\]: the settling band plus half a resolution.
+/// δ \[m\]: the settling band plus half a resolution, in numbers of the prototype where it is largest.
 fn uncertain(plan: &Plan, mode: Mode) -> f64 {
     let resolution = match &plan.rig.link {
         Link::Virtual(link) => link.resolution,
@@ -253,7 +255,13 @@ fn uncertain(plan: &Plan, mode: Mode) -> f64 {
     };
     let lags = plan.rig.link.as_virtual().is_none_or(|link| link.lag > 0.0);
     let settles = lags && mode == Mode::StepAndPause;
-    0.5 * resolution + if settles { plan.rig.settle.band } else { 0.0 }
+    let on_the_rig = DeclaredNoise {
+        force: 0.0,
+        resolution: 0.5 * resolution + if settles { plan.rig.settle.band } else { 0.0 },
+    };
+    let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
+    let largest = assemblies.map(|assemblies| assemblies.largest_noise(on_the_rig));
+    largest.unwrap_or(on_the_rig).resolution
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use crate::exit::Failure;
 use psd::remote;
 use psd::remote::Protocol;
+use psd_physics::structure::substructures::stiffness_on_the_rig;
 use psd_plan::Plan;
 use psd_rig::VirtualRig;
 use psd_text::units::{Dimension, unit};
@@ -67,7 +68,7 @@ pub fn protocol(arguments: &ClientArguments, plan: &Plan) -> Result<Protocol, Fa
                     ));
                 }
                 return Ok(Protocol::GenericClient {
-                    stiffness: frame.stiffness.concat(),
+                    stiffness: stiffness_on_the_rig(frame).concat(),
                 });
             }
             let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());

@@ -299,6 +299,11 @@ fn on_record(
         if !clients.address.ip().is_loopback() {
             print_message(&open_listener(clients.address, *settings));
         }
+        if let Some(specimens) = plan.specimens_at_scale() {
+            print_message(&format!(
+                "  displacements, forces and stiffness are numbers of the rig: {specimens}\n"
+            ));
+        }
         // The program that started this one waits for the line.
         printed = print_result(&format!(
             "ready: {} on {}\n",

@@ -21,6 +21,14 @@ const MOST_EVENTS: usize = 32;
 /// The procedure without motion.
 pub const INSPECT: &str = "inspect";
 
+/// What follows displacements and forces of steps: ` on the rig` if those of the prototype are others.
+pub fn of_rig(plan: &Plan) -> &'static str {
+    match plan.specimens_at_scale() {
+        Some(_) => " on the rig",
+        None => "",
+    }
+}
+
 /// All drawn data except the dialogue with the operator.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -28,6 +36,8 @@ pub struct Model {
     pub rig: String,
     pub simulated: bool,
     pub limits: Limits,
+    /// What follows a displacement and a force: [`of_rig`].
+    pub of_rig: &'static str,
     /// The procedure that runs, or that ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
@@ -124,6 +134,7 @@ impl Model {
             rig: plan.rig.name.clone(),
             simulated,
             limits: plan.limits,
+            of_rig: of_rig(plan),
             procedure: None,
             last: None,
             study: None,
@@ -143,6 +154,11 @@ impl Model {
             live: None,
             ended: None,
         }
+    }
+
+    /// `force`, or `force on the rig`.
+    pub fn on_the_rig(&self, word: &str) -> String {
+        format!("{word}{}", self.of_rig)
     }
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {

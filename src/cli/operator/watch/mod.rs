@@ -11,6 +11,7 @@ use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
 use super::pace::{Pace, Part};
 use super::question::{self, After, Question, QuestionKind, Stay};
+use super::screen::model::of_rig;
 use super::screen::{self, Screen};
 use crate::args::ScreenForm;
 use crate::commands::explain_plan::dry_rig::Reach;
@@ -122,6 +123,7 @@ impl Watcher {
         let stop_request = signals.stop_request().clone();
         let operator = attendance.operator_of(plan);
         let form = attendance.screen;
+        let of_rig = of_rig(plan);
         let face = match form {
             Some(ScreenForm::Never) => Face::Lines(Lines::silent()),
             Some(ScreenForm::Full) | None if drawn && can_draw(settings) => {
@@ -135,8 +137,10 @@ impl Watcher {
                     settings.color,
                 ))
             }
-            None if drawn && settings.stderr_terminal => Face::Bar(Bar::new(settings.unicode)),
-            _ => Face::Lines(Lines::default()),
+            None if drawn && settings.stderr_terminal => {
+                Face::Bar(Bar::new(settings.unicode, of_rig))
+            }
+            _ => Face::Lines(Lines::new(of_rig)),
         };
         let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
             (true, ..) => Asking::Yes(operator),

@@ -20,12 +20,14 @@ pub struct Bar {
     counted: ProgressStyle,
     endless: ProgressStyle,
     shown: Option<ProgressBar>,
+    /// What follows displacements and forces.
+    of_rig: &'static str,
     /// The time left of the run, if it is known.
     pub left: Option<Duration>,
 }
 
 impl Bar {
-    pub fn new(unicode: bool) -> Self {
+    pub fn new(unicode: bool, of_rig: &'static str) -> Self {
         let template = |text| {
             ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar())
         };
@@ -35,6 +37,7 @@ impl Bar {
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
             shown: None,
+            of_rig,
             left: None,
         }
     }
@@ -74,8 +77,9 @@ impl Observer for Bar {
                 readable(report.highest(), Dimension::LENGTH),
             );
             bar.set_message(format!(
-                "{time}  {displacement}  {}{}",
+                "{time}  {displacement}  {}{}{}",
                 readable(force, Dimension::FORCE),
+                self.of_rig,
                 time_left(self.left)
             ));
         }
@@ -108,6 +112,8 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 pub struct Lines {
     /// Only events.
     silent: bool,
+    /// What follows displacements and forces.
+    of_rig: &'static str,
     name: String,
     keyword: String,
     steps: Option<u64>,
@@ -124,6 +130,14 @@ pub struct Lines {
 }
 
 impl Lines {
+    /// `of_rig` follows displacements and forces.
+    pub fn new(of_rig: &'static str) -> Self {
+        Self {
+            of_rig,
+            ..Self::default()
+        }
+    }
+
     /// Events only: no progress.
     pub fn silent() -> Self {
         Self {
@@ -139,11 +153,12 @@ impl Lines {
             format!(" of {}", steps.max(report.step))
         });
         format!(
-            "  {}: step {}{of}, X {}, R {}{}\n",
+            "  {}: step {}{of}, X {}, R {}{}{}\n",
             escape(&self.name),
             report.step,
             readable(report.highest(), Dimension::LENGTH),
             readable(report.force(), Dimension::FORCE),
+            self.of_rig,
             time_left(self.left)
         )
     }
@@ -159,7 +174,8 @@ impl Lines {
             );
             let _ = write!(
                 text,
-                ", {step} {steps}, largest X {displacement}, largest R {force}"
+                ", {step} {steps}, largest X {displacement}, largest R {force}{}",
+                self.of_rig
             );
         }
         if let Some(reading) = &self.stopped_by {
@@ -174,6 +190,7 @@ impl Observer for Lines {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         *self = Self {
             silent: self.silent,
+            of_rig: self.of_rig,
             name: name.to_owned(),
             keyword: keyword.to_owned(),
             steps,

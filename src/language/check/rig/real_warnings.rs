@@ -1,10 +1,13 @@
 //! Warnings of a real rig whose results would not be reliable: calibrations, resolution, the probe, devices without a serial number. In: the
 //! checked rig of a run. Out: warnings. It opens no port.
 
+use std::ops::Range;
+
 use crate::check::checker::Checker;
 use crate::check::wording::shown;
 use crate::codes::{W707, W708, W711, W727, W734, W735};
 use crate::syntax::ast::{Expr, ExprKind};
+use psd_physics::structure::substructures::stiffness_on_the_rig;
 use psd_plan::schema::rig as schema;
 use psd_plan::{Calibration, DeviceLink, Dialect, Interval, PortPlan, PretestCheck, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
@@ -133,6 +136,8 @@ const CHECK_OVER_NOISE: f64 = 10.0;
 
 /// A pre-test check that refuses the stiffness \[N/m\] that the plan states.
 struct WindowExcludes {
+    /// ` of axis 2`, if the rig has several.
+    of: String,
     window: Interval,
     stiffness: f64,
     at: Span,
@@ -143,6 +148,7 @@ impl Violation for WindowExcludes {
 
     fn diagnostic(self) -> Diagnostic {
         let Self {
+            of,
             window,
             stiffness,
             at,
@@ -171,7 +177,7 @@ impl Violation for WindowExcludes {
         Diagnostic::new(
         Self::CODE,
         format!(
-            "pre-test check will refuse the specimen: its stiffness {} is outside {low} .. {high}",
+            "pre-test check{of} will refuse the specimen: its stiffness {} is outside {low} .. {high}",
             show(stiffness)
         ),
     )
@@ -318,7 +324,8 @@ pub fn warn(
             at,
         });
     }
-    let excluded = excluded(specimens, &link.pretest_check_of(0));
+    let window = |axis: usize| link.pretest_check_of(axis).stiffness;
+    let excluded = excluded(specimens, axes.clone(), &window);
     let drowned = axes
         .clone()
         .filter(|_| excluded.is_none())
@@ -331,10 +338,14 @@ pub fn warn(
     let given = checker
         .field(block, schema::PRETEST_CHECK.name)
         .or_else(|| checker.field(block, schema::AXES.name));
-    if let (Some(stiffness), Some((_, entry))) = (excluded, given) {
-        let window = link.pretest_check_of(0).stiffness;
+    if let (Some((axis, stiffness)), Some((_, entry))) = (excluded, given) {
+        let of = match axes.len() {
+            1 => String::new(),
+            _ => format!(" of axis {}", axis + 1),
+        };
         checker.report(WindowExcludes {
-            window,
+            of,
+            window: window(axis),
             stiffness,
             at: entry.value.span,
         });
@@ -389,17 +400,26 @@ pub fn warn(
     }
 }
 
-/// The stated stiffness \[N/m\] of the one specimen of the plan, of one degree of freedom, if the window of the pre-test check excludes it.
-fn excluded(specimens: &[Option<Specimen>], check: &PretestCheck) -> Option<f64> {
+/// The axis of which the window of the pre-test check excludes the stated stiffness of the one specimen of the plan, with that stiffness
+/// in numbers of the rig \[N/m\]. Each axis is moved alone, so that the stiffness is one of the diagonal.
+fn excluded(
+    specimens: &[Option<Specimen>],
+    mut axes: Range<usize>,
+    window: &dyn Fn(usize) -> Interval,
+) -> Option<(usize, f64)> {
     let [Some(specimen)] = specimens else {
         return None;
     };
-    let behaviour = specimen
-        .behaviour
-        .as_ref()
-        .filter(|_| specimen.frame.is_none())?;
-    let stiffness = behaviour.initial_stiffness();
-    (stiffness.is_finite() && !check.stiffness.contains(stiffness)).then_some(stiffness)
+    let stiffness = match (&specimen.frame, &specimen.behaviour) {
+        (Some(frame), _) => stiffness_on_the_rig(frame),
+        (None, Some(behaviour)) => vec![vec![behaviour.initial_stiffness()]],
+        (None, None) => return None,
+    };
+    axes.find_map(|axis| {
+        let stiffness = *stiffness.get(axis)?.get(axis)?;
+        let is_excluded = stiffness.is_finite() && !window(axis).contains(stiffness);
+        is_excluded.then_some((axis, stiffness))
+    })
 }
 
 fn displacement_due(calibration: &Calibration) -> Option<&String> {

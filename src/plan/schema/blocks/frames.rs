@@ -21,18 +21,70 @@ pub mod storey {
     pub const TESTED: &str = "tested";
     pub const COMPUTED: &str = "computed";
     pub const APART: &str = "apart";
+    pub const SCALE: &str = "scale";
+    pub const SCALE_OF_DISPLACEMENTS: &str = "displacement";
+    pub const SCALE_OF_FORCES: &str = "force";
+    pub const REPRESENTS: &str = "represents";
 }
+
+/// Smallest scale of a specimen; the largest is its inverse.
+const SMALLEST_SCALE: f64 = 0.01;
+
+/// Equal parts of a storey, at most.
+const MOST_PARTS: f64 = 1000.0;
+
+/// A scale of displacements that is not that of lengths, or a scale of forces that is not its square.
+const SCALES: &[Variant] = &[Variant::with(
+    storey::SCALE,
+    &[
+        Field::quantity(
+            storey::SCALE_OF_DISPLACEMENTS,
+            Dimension::NUMBER,
+            "displacement on the rig over that of the storey",
+        )
+        .within(SMALLEST_SCALE, 1.0 / SMALLEST_SCALE)
+        .required("displacement: 0.5"),
+        Field::quantity(
+            storey::SCALE_OF_FORCES,
+            Dimension::NUMBER,
+            "force on the rig over that of the part of the storey that it represents",
+        )
+        .within(
+            SMALLEST_SCALE * SMALLEST_SCALE,
+            1.0 / (SMALLEST_SCALE * SMALLEST_SCALE),
+        )
+        .required("force: 0.3"),
+    ],
+    "two scales, if stresses are not those of the storey",
+)];
 
 /// The substructure that gives the shear of a storey.
 const PARTS: &[Variant] = &[
     Variant::with(
         storey::TESTED,
-        &[Field::choice(
-            storey::APART,
-            TRUTH,
-            "whether it is a separate specimen, and not one with the tested storey below",
-        )
-        .default_in_words("false")],
+        &[
+            Field::choice(
+                storey::APART,
+                TRUTH,
+                "whether it is a separate specimen, and not one with the tested storey below",
+            )
+            .default_in_words("false"),
+            Field::quantity_or(
+                storey::SCALE,
+                Dimension::NUMBER,
+                SCALES,
+                "length on the rig over that of the storey; forces have its square",
+            )
+            .within(SMALLEST_SCALE, 1.0 / SMALLEST_SCALE)
+            .or(1.0, ""),
+            Field::count(
+                storey::REPRESENTS,
+                1.0,
+                MOST_PARTS,
+                "number of equal parts of the storey, of which one is on the rig",
+            )
+            .or(1.0, ""),
+        ],
         "on the rig, with an axis; adjacent tested storeys are one specimen",
     ),
     Variant::word(storey::COMPUTED, "by its `behaviour`, without an axis"),
@@ -79,7 +131,7 @@ const STOREY: &[Variant] = &[Variant::with(
         Field::choice(
             storey::BEHAVIOUR,
             BEHAVIOURS,
-            "restoring-force model of a virtual rig or of a computed storey: storey shear against drift",
+            "restoring-force model of a virtual rig or of a computed storey: storey shear against drift; in numbers of the rig if it is tested",
         )
         .default_in_words("elastic with `stiffness`"),
         Field::quantity(

@@ -4,6 +4,7 @@ use super::described;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::wording::specimen as specimen_text;
+use psd_plan::scaled::at_scale;
 use psd_plan::{Frame, Ground, Part};
 use psd_text::units::Dimension;
 
@@ -23,12 +24,17 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     }
     let substructures = specimen_text::substructures(frame);
     rows.extend(substructures.clone().map(|text| ("substructures", text)));
+    let numbers = specimen_text::numbers(frame);
+    let is_scaled = numbers.is_some();
+    rows.extend(numbers.map(|text| ("numbers", text)));
     body.push(described(rows));
     if frame.storeys.is_empty() {
         return;
     }
     let is_hybrid = substructures.is_some();
-    let behaviour = if is_hybrid {
+    let behaviour = if is_scaled {
+        "Behaviour, on the rig if tested"
+    } else if is_hybrid {
         "Behaviour"
     } else {
         "Virtual behaviour"
@@ -70,8 +76,8 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
             cells.extend(["—", "—"].map(Text::from));
         }
         let part = match storey.part {
-            Part::Tested { .. } => "tested",
-            Part::Computed => "computed",
+            Part::Tested { scale, .. } => format!("tested{}", at_scale(&scale)),
+            Part::Computed => "computed".to_owned(),
         };
         cells.extend(is_hybrid.then(|| part.into()));
         cells.push(specimen_text::words(&storey.behaviour, &number::stated).into());
@@ -84,7 +90,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         rows: frame.storeys.iter().enumerate().map(row).collect(),
     }));
     if is_hybrid {
-        body.push(Block::note(specimen_text::SUBSTRUCTURES_ASSUMED));
+        body.push(Block::note(specimen_text::assumed(frame)));
     }
 }
 

@@ -83,7 +83,11 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(as_stated(wording::striker(&striker.name))));
         body.push(striker_table(striker));
     }
-    body.push(Block::part(wording::LIMITS));
+    body.push(Block::part(if run.plan.specimens_at_scale().is_some() {
+        wording::LIMITS_OF_THE_RIG
+    } else {
+        wording::LIMITS
+    }));
     body.push(limits(run));
     if !run.plan.parameters.is_empty() {
         body.push(Block::part(wording::PARAMETERS));

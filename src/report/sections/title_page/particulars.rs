@@ -20,13 +20,12 @@ pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
             stated(run, particular.field)?.into(),
         ))
     });
-    let frames = run
-        .plan
-        .specimens
-        .iter()
-        .filter_map(|specimen| specimen.frame.as_ref());
-    let substructures = frames.filter_map(specimen_text::substructures);
+    let specimens = run.plan.specimens.iter();
+    let frames = || specimens.clone().filter_map(|it| it.frame.as_ref());
+    let substructures = frames().filter_map(specimen_text::substructures);
+    let numbers = frames().filter_map(specimen_text::numbers);
     rows.chain(substructures.map(|text| (wording::SUBSTRUCTURES.into(), text.into())))
+        .chain(numbers.map(|text| (wording::NUMBERS.into(), text.into())))
         .chain([(wording::PLAN.into(), plan(run))])
         .collect()
 }

@@ -2,7 +2,7 @@
 //! equals the virtual run, and the pre-test check measures each assembly alone.
 
 use super::held;
-use super::two_axes::{checked, ideal, results, same};
+use super::two_axes::{checked, ideal, messages, results, same};
 use crate::tests::fault_table::stage::run;
 use psd_rig::LineStatistics;
 
@@ -81,5 +81,56 @@ fn two_assemblies_that_are_exchanged_are_found_by_the_pretest_check() {
     held(
         &ended,
         "the stiffness of axis 1 in a move of 50 µm is 300.0 kN/m",
+    );
+}
+
+/// The first storey of two equal columns, one of which is on the rig at half scale; the third storey has two scales that are not those of
+/// lengths. The windows of the pre-test check are those of the specimens: 75 kN/m and 120 kN/m.
+fn scaled() -> String {
+    PLAN.replace(
+        "stiffness: 300 kN/m)",
+        "stiffness: 300 kN/m, part: tested(scale: 1 / 2, represents: 2))",
+    )
+    .replace(
+        "stiffness: 200 kN/m)",
+        "stiffness: 200 kN/m, part: tested(scale: scale(displacement: 0.5, force: 0.3)))",
+    )
+    .replace("290 kN/m .. 310 kN/m", "70 kN/m .. 80 kN/m")
+    .replace("190 kN/m .. 210 kN/m", "115 kN/m .. 125 kN/m")
+}
+
+#[test]
+fn specimens_at_a_scale_give_the_results_of_the_prototype() {
+    let ended = run(&checked(&scaled(), "frame_rig"), "");
+    assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
+    let found = "axis 1: 0 kN at rest, zero drift 0 kN/s, stiffness 75.00 kN/m";
+    let notes = ended.record.events.iter().map(|event| &event.text);
+    assert!(
+        notes.clone().any(|note| note.contains(found)),
+        "{:?}",
+        notes.collect::<Vec<_>>()
+    );
+    // The line resolves 1 nm and 1 mN of the rig: 2 nm and 8 mN of the prototype.
+    same(&results(&ended.record), &ideal(PLAN), |name, size| {
+        if name.contains("energy_error") || name.contains("nrms_error") {
+            1e-5
+        } else {
+            1e-6 + 1e-5 * size
+        }
+    });
+}
+
+/// The stated stiffness of each axis is known before anything moves, and so is a window in numbers of the prototype.
+#[test]
+fn a_window_in_numbers_of_the_prototype_is_a_warning() {
+    let warned = |text: &str| messages(text, "frame_rig", "W735");
+    assert_eq!(warned(PLAN), Vec::<String>::new());
+    assert_eq!(warned(&scaled()), Vec::<String>::new());
+    let of_prototype = scaled().replace("115 kN/m .. 125 kN/m", "190 kN/m .. 210 kN/m");
+    assert_eq!(
+        warned(&of_prototype),
+        [
+            "pre-test check of axis 2 will refuse the specimen: its stiffness 0.12 MN/m is outside 0.19 MN/m .. 0.21 MN/m"
+        ]
     );
 }

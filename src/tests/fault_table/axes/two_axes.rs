@@ -1,7 +1,7 @@
 //! The plans of this folder's tests of several axes: a two-storey frame under ground motion on a rig of two axes. The upper axis has the
 //! opposite polarity. In: text. Out: checked plans, and the same plans on an ideal virtual rig.
 
-use crate::check::{LoadError, Options, check};
+use crate::check::{Checked, LoadError, Options, check};
 use crate::run::{Unwatched, run};
 use psd_plan::formula::ResultValue;
 use psd_plan::record::Record;
@@ -76,14 +76,27 @@ fn folder(path: &str) -> Result<String, LoadError> {
 
 /// A plan by its text, on this rig.
 pub(crate) fn checked(text: &str, rig: &str) -> Plan {
+    let checked = check_on(text, rig);
+    checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+}
+
+/// The messages of this code about the plan on this rig.
+pub(crate) fn messages(text: &str, rig: &str, code: &str) -> Vec<String> {
+    let diagnostics = check_on(text, rig).diagnostics;
+    let of_code = diagnostics
+        .into_iter()
+        .filter(|diagnostic| diagnostic.code.to_string() == code);
+    of_code.map(|diagnostic| diagnostic.message).collect()
+}
+
+fn check_on(text: &str, rig: &str) -> Checked {
     let options = Options {
         rig: Some(rig.to_owned()),
         ..Options::default()
     };
-    let checked = check("plan.psd", text, &folder, &options);
-    checked
-        .plan
-        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+    check("plan.psd", text, &folder, &options)
 }
 
 /// The ground-motion test above for this duration.

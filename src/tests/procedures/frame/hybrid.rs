@@ -9,11 +9,15 @@ use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
     Behaviour, Contact, Impact, ImpactTarget, Integrator, Link, Mode, Part, Plan, Procedure,
-    ProcedureKind, Shake, ShakeDamping, Stepping, Storey, StoreyTarget, Unload, Until, VirtualLink,
+    ProcedureKind, Scale, Shake, ShakeDamping, Stepping, Storey, StoreyTarget, Unload, Until,
+    VirtualLink,
 };
 
 pub(super) const TESTED: Part = Part::TESTED;
-const APART: Part = Part::Tested { apart: true };
+const APART: Part = Part::Tested {
+    apart: true,
+    scale: Scale::FULL,
+};
 pub(super) const COMPUTED: Part = Part::Computed;
 
 /// First, middle and highest storey tested; two in one assembly; an assembly on a computed storey; two assemblies; adjacent but apart;
@@ -47,7 +51,7 @@ pub(super) fn bilinear(stiffness: f64) -> Behaviour {
 }
 
 /// No tangent exceeds the initial stiffness.
-fn bouc_wen(stiffness: f64) -> Behaviour {
+pub(super) fn bouc_wen(stiffness: f64) -> Behaviour {
     Behaviour::BoucWen {
         stiffness,
         yield_force: 0.01 * stiffness,
@@ -300,26 +304,28 @@ fn a_measured_floor_stands_on_the_measured_floors_below() {
     assert!(off > 4e-4 && off < 5.1e-4, "{off}");
 }
 
+/// The frame is shaken, unloaded, and shaken again.
+pub(super) fn twice(parts: [Part; 3]) -> Plan {
+    let mut plan = shaken(parts, bilinear, Integrator::Explicit);
+    let again = plan.procedures[0].clone();
+    let rest = ProcedureKind::Unload(Unload {
+        specimen: 0,
+        stiffness: None,
+        within: Some(Constant(1e-6)),
+        speed: None,
+    });
+    let named = |name: &str, kind| Procedure {
+        name: name.to_owned(),
+        kind,
+    };
+    plan.procedures
+        .extend([named("rest", rest), named("again", again.kind)]);
+    plan
+}
+
 /// Both storeys are left with the plastic drift of their shear history, the computed one without a motion; the second test begins there.
 #[test]
 fn computed_storeys_keep_their_state_and_begin_again_at_zero_shear() {
-    let twice = |parts| {
-        let mut plan = shaken(parts, bilinear, Integrator::Explicit);
-        let again = plan.procedures[0].clone();
-        let rest = ProcedureKind::Unload(Unload {
-            specimen: 0,
-            stiffness: None,
-            within: Some(Constant(1e-6)),
-            speed: None,
-        });
-        let named = |name: &str, kind| Procedure {
-            name: name.to_owned(),
-            kind,
-        };
-        plan.procedures
-            .extend([named("rest", rest), named("again", again.kind)]);
-        plan
-    };
     let whole = run_unwatched(&twice([TESTED; 3]));
     for parts in SPLITS {
         let split = run_unwatched(&twice(parts));

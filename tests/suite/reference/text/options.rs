@@ -98,7 +98,9 @@ impl<'b> Written<'b> {
             let Some(of) = origin(argument) else {
                 self.arguments.push((format!("{argument:?}"), variant.name));
                 self.write_argument(text, &indent, argument);
-                if let (FieldType::Choice(inner), false) = (argument.ty, is_truth(argument)) {
+                if let (FieldType::Choice(inner) | FieldType::QuantityOr(_, inner), false) =
+                    (argument.ty, is_truth(argument))
+                {
                     self.list(text, block, argument.name, inner, depth + 2);
                 }
                 rest = after;

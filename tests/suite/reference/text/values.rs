@@ -14,6 +14,13 @@ pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
         FieldType::Quantity(dimension) => {
             format!("{}{}", unit(dimension), limits(field.range, dimension))
         }
+        FieldType::QuantityOr(dimension, _) => {
+            format!(
+                "{}{}, or option",
+                unit(dimension),
+                limits(field.range, dimension)
+            )
+        }
         FieldType::Quantities(dimension) => format!("list, {}", unit(dimension)),
         FieldType::Bounds {
             dimension,

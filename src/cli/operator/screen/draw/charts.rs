@@ -23,8 +23,9 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     } else {
         "X"
     };
-    let displacement = [("t", Dimension::TIME), (x, Dimension::LENGTH)];
-    let force = [(across, Dimension::LENGTH), (r, Dimension::FORCE)];
+    let [x, r] = [x, r].map(|word| view.model.on_the_rig(word));
+    let displacement = [("t", Dimension::TIME), (&*x, Dimension::LENGTH)];
+    let force = [(across, Dimension::LENGTH), (&*r, Dimension::FORCE)];
     let curves = &view.model.curves;
     let predicted = view.model.prediction();
     // The time of a step that does not integrate is that of the laboratory, which is not predicted.

@@ -164,6 +164,7 @@ fn numbers(
     } else {
         ("X", "R")
     };
+    let displacement = view.model.on_the_rig(displacement);
     let mut words = vec![
         format!("{displacement} {}", readable(highest, Dimension::LENGTH)),
         format!("{force} {}", readable(sum, Dimension::FORCE)),

@@ -32,10 +32,11 @@ pub fn nearest(rows: &[LimitRow], most: usize) -> Vec<LimitRow> {
 
 /// `all`: the total number of limits, of which these rows are shown.
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], all: usize, area: Rect) {
+    let limits = view.model.on_the_rig("Limits");
     let heading = if rows.len() < all {
-        format!(" Limits, the {} nearest of {all} ", rows.len())
+        format!(" {limits}, the {} nearest of {all} ", rows.len())
     } else {
-        " Limits ".to_owned()
+        format!(" {limits} ")
     };
     let block = view.part(&heading);
     let inside = block.inner(area);

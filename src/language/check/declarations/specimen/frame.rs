@@ -13,7 +13,7 @@ use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
 use psd_plan::schema::{Field, FieldType, specimen as fields};
-use psd_plan::{Behaviour, Frame, MOST_STOREYS, Part, Storey};
+use psd_plan::{Behaviour, Frame, MOST_STOREYS, Part, Scale, Storey};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Span, Spanned};
 use psd_text::units::Dimension;
@@ -21,6 +21,7 @@ use psd_text::units::display::significant;
 
 use super::behaviour::{self, Material, Written};
 use super::matrix;
+use super::scale::{AnotherScaleInOneSpecimen, StoreyOfAnotherScale, scale};
 
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = [
@@ -230,12 +231,27 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
     let mut below = Part::Computed;
     for (index, storey) in storeys.iter().enumerate() {
         let below = std::mem::replace(&mut below, storey.part);
-        if storey.part == (Part::Tested { apart: true }) && below == Part::Computed {
-            let span = chosen[index].span(storey::PART).unwrap_or(at(index));
-            return checker.fail(ApartFromNothing {
-                number: index + 1,
-                span,
-            });
+        let Part::Tested { apart, scale } = storey.part else {
+            continue;
+        };
+        let span = chosen[index].span(storey::PART).unwrap_or(at(index));
+        match below {
+            Part::Computed if apart => {
+                return checker.fail(ApartFromNothing {
+                    number: index + 1,
+                    span,
+                });
+            }
+            Part::Tested { scale: other, .. } if !apart && scale != other => {
+                return checker.fail(AnotherScaleInOneSpecimen {
+                    number: index + 1,
+                    span,
+                    below: chosen[index - 1]
+                        .span(storey::PART)
+                        .unwrap_or(at(index - 1)),
+                });
+            }
+            _ => {}
         }
     }
     Some(storeys)
@@ -353,7 +369,7 @@ struct RigDampingOfComputed<'a> {
 }
 
 /// The substructure of a storey.
-fn part<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Part> {
+fn part<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, context: Context) -> Option<Part> {
     if chosen.span(storey::PART).is_none() {
         return Some(Part::TESTED);
     }
@@ -365,7 +381,8 @@ fn part<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Part> {
         Some(_) => checker.chosen_argument(&word, storey::APART)?.variant.name == "true",
         None => false,
     };
-    Some(Part::Tested { apart })
+    let scale = scale(checker, &word, context)?;
+    Some(Part::Tested { apart, scale })
 }
 
 #[derive(Violation)]
@@ -465,10 +482,11 @@ fn storey<'a>(
     };
     let damping = checker.constant_argument(chosen, storey::DAMPING, context);
     let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
-    let part = part(checker, chosen);
+    let part = part(checker, chosen, context);
     let (mass, height, gravity, behaviour, damping, coulomb) =
         (mass?, height?, gravity?, behaviour?, damping?, coulomb?);
     let part = part?;
+    let scale = part.scale();
     for (field, value) in [(storey::DAMPING, damping), (storey::COULOMB, coulomb)] {
         if part == Part::Computed && value != 0.0 {
             return checker.fail(RigDampingOfComputed {
@@ -489,27 +507,41 @@ fn storey<'a>(
         }
         (Some(stiffness), None, _) => stiffness,
         (None, Some(column), _) => 2.0 * column,
-        (None, None, Some(behaviour)) => behaviour.initial_stiffness(),
+        (None, None, Some(behaviour)) => scale.stiffness_of_storey(behaviour.initial_stiffness()),
         (None, None, None) => return checker.fail(StoreyWithoutStiffness { number, span: at }),
     };
     let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
+    let differs = |initial: f64| {
+        let model = scale.stiffness_of_storey(initial);
+        (stiffness - model).abs() > SAME * stiffness.max(model) + WITHIN * stiffness_uncertainty
+    };
     if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
-        && (stiffness - initial).abs()
-            > SAME * stiffness.max(initial) + WITHIN * stiffness_uncertainty
+        && differs(initial)
     {
         let given = [storey::STIFFNESS, storey::COLUMN_STIFFNESS]
             .into_iter()
             .find_map(|field| Some((field, chosen.span(field)?)));
         let (field, given) = given.unwrap_or((storey::STIFFNESS, at));
         let bends = chosen.span(storey::BEHAVIOUR).unwrap_or(at);
+        let (stated, model) = (Spanned::new(stiffness, given), Spanned::new(initial, bends));
+        if scale != Scale::FULL {
+            return checker.fail(StoreyOfAnotherScale {
+                number,
+                stated,
+                model,
+                scale: Spanned::new(scale, chosen.span(storey::PART).unwrap_or(at)),
+            });
+        }
         return checker.fail(StoreyBendsOtherwise {
             number,
             field,
-            stated: Spanned::new(stiffness, given),
-            model: Spanned::new(initial, bends),
+            stated,
+            model,
         });
     }
-    let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
+    let behaviour = behaviour.unwrap_or(Behaviour::Elastic {
+        stiffness: scale.stiffness_on_the_rig(stiffness),
+    });
     let stated = [
         (
             storey::MASS_UNCERTAINTY,

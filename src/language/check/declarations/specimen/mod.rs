@@ -6,6 +6,7 @@ pub mod behaviour;
 pub mod frame;
 mod matrix;
 mod portal;
+mod scale;
 mod table_file;
 
 use crate::check::checker::Checker;
