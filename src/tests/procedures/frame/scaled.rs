@@ -1,5 +1,6 @@
 //! Specimens at a scale, one of several equal parts: the prototype has the results of the test at full scale. The rig has other numbers.
 
+use super::gravity::weighed;
 use super::hybrid::{
     COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
     shaken, struck, twice,
@@ -97,6 +98,27 @@ fn the_prototype_moves_as_at_full_scale() {
                         &case,
                     );
                 }
+            }
+        }
+    }
+}
+
+/// P-Δ is that of the prototype: no scale enters it.
+#[test]
+fn a_prototype_with_weights_moves_as_at_full_scale() {
+    for integrator in INTEGRATORS {
+        for parts in [[TESTED; 3]].into_iter().chain(SPLITS) {
+            let plan = weighed(shaken(parts, bilinear, integrator));
+            let full = run_unwatched(&plan);
+            for scale in SCALES {
+                let case = format!("{integrator:?}, {parts:?}, {scale:?}");
+                same(
+                    &run_unwatched(&at_scale(&plan, scale)),
+                    &full,
+                    0,
+                    1e-12,
+                    &case,
+                );
             }
         }
     }
