@@ -604,6 +604,16 @@ fn a_plan_without_its_ending_is_named() {
 }
 
 #[test]
+fn a_plan_is_not_the_folder_of_a_study() {
+    let workspace = Workspace::new(&[("good.psd", SOUND)]);
+    for command in ["status", "merge"] {
+        let ended = workspace.psd(&["study", command, "good.psd"]).with(3);
+        let expected = "good.psd: is a file, not the folder of a study";
+        assert!(ended.stderr.contains(expected), "{}", ended.stderr);
+    }
+}
+
+#[test]
 fn a_plan_without_a_procedure_is_not_run() {
     let (specimen, _) = SOUND.split_once("striker hammer").unwrap();
     let workspace = Workspace::new(&[("idle.psd", specimen), ("empty.psd", "")]);

@@ -92,14 +92,14 @@ fn at_a_terminal_the_name_is_asked_for_before_anything_is_opened() {
     let stage = Stage::new();
     for mut command in unnamed(&stage, &[]) {
         let mut terminal = Terminal::start(&mut command);
-        terminal.answer("your name", "  \n");
+        terminal.answer("name of the operator?", "  \n");
         terminal.answer("at most 200 characters", "\u{4}");
         assert_eq!(terminal.code(), Some(2), "{}", terminal.shown());
     }
     assert!(stage.requests().is_empty() && !stage.path("run").exists());
     let [mut run, ..] = <[Command; 4]>::try_from(unnamed(&stage, &[])).unwrap();
     let mut terminal = Terminal::start(&mut run);
-    terminal.answer("your name", "D. Tester\n");
+    terminal.answer("name of the operator?", "D. Tester\n");
     terminal.answer(RELEASE, "n\n");
     assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     let record = std::fs::read_to_string(stage.journal()).unwrap();

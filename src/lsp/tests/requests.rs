@@ -229,6 +229,13 @@ fn a_block_is_formatted_when_it_is_closed_and_its_lines_while_it_is_typed() {
         edited(&marked.replace(CURSOR, ""), &edits),
         "striker s {\n  mass = 1 kg\n\n}\n"
     );
+    // A line that is typed between two entries leaves them aligned.
+    let marked = "striker s {\n  mass= 1 kg\n‸\n  velocity = 1 m/s\n}\n";
+    let edits = editor.at("a.psd", marked, "textDocument/onTypeFormatting", on("\n"));
+    assert_eq!(
+        edited(&marked.replace(CURSOR, ""), &edits),
+        "striker s {\n  mass     = 1 kg\n\n  velocity = 1 m/s\n}\n"
+    );
 }
 
 #[test]

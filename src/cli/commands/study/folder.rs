@@ -12,8 +12,25 @@ use psd::study::cluster::slurm::ARRAY_SCRIPT;
 use psd::study::collection::merge::{self, listed, resubmission};
 use psd::study::collection::status::{self, StudyPart};
 
+fn without_study(folder: &Path, found: &str) -> Failure {
+    Failure::file(folder, found).help("name the folder of `psd study run`")
+}
+
+/// A plan or a data set is not the folder of a study.
+fn refuse_file(folder: &Path) -> Result<(), Failure> {
+    if folder.is_file() {
+        Err(without_study(
+            folder,
+            "is a file, not the folder of a study",
+        ))
+    } else {
+        Ok(())
+    }
+}
+
 /// Shows the runs that are there, and the shards that are not finished.
 pub fn status(folder: &Path) -> Result<Exit, Failure> {
+    refuse_file(folder)?;
     let status = status::status(folder).map_err(|fault| failure::of_data_set(&fault))?;
     let queue = slurm::queue(folder);
     let Some(metadata) = &status.metadata else {
@@ -21,8 +38,7 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
             print_result(&format!("no runs are durable yet\n{}", queued(&queue)))?;
             return Ok(Exit::Unfinished);
         }
-        return Err(Failure::file(folder, "contains no runs of a study yet")
-            .help("name the folder of `psd study run`"));
+        return Err(without_study(folder, "contains no runs of a study yet"));
     };
     let mut text = format!(
         "study {} of {}, {} runs\n",
@@ -93,6 +109,7 @@ fn unfinished(part: &StudyPart) -> String {
 
 /// Puts shards together, and answers as `psd study run` does. `plan`: the plan for the lines that reproduce a run, with its folder.
 pub fn merge(folder: &Path, plan: Option<&Path>) -> Result<Exit, Failure> {
+    refuse_file(folder)?;
     let (path, metadata) = merge::merge(folder).map_err(|fault| failure::of_merge(&fault))?;
     let (runs, path_shown) = (metadata.runs(), path.display());
     print_message(&format!("  {runs} runs are in {path_shown}\n"));
