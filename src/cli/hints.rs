@@ -1,10 +1,14 @@
 //! Options and commands that other programs have, with what psd has instead. In: an error of the command line. Out: the same error, with
 //! the hint in place of a similar word.
 
-use clap::Error;
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::ffi::OsString;
 
-/// Options, and what to write.
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory as _, Error};
+
+use crate::commands::Arguments;
+
+/// Options, and what to write: the first option of psd in the hint is one of the command, or the hint names another command.
 const OPTIONS: &[(&[&str], &str)] = &[
     (
         &["-o", "--output", "--output-dir"],
@@ -71,9 +75,28 @@ const COMMANDS: &[(&[&str], &str)] = &[
     (&["accept", "bless"], "`psd test --accept` accepts results"),
 ];
 
-/// The error with a hint, if it is about a word of another program. An unknown long option of a command that takes `--set` may be the name
-/// of a parameter.
-pub fn with_hint(mut error: Error) -> Error {
+/// The long option that a hint begins with; none if it begins with a command.
+fn option_of(hint: &str) -> Option<&str> {
+    hint.strip_prefix("`--")?.split([' ', '`']).next()
+}
+
+/// Whether the command of this line takes a long option.
+fn takes(line: &[OsString], option: &str) -> bool {
+    let mut command = Arguments::command();
+    for word in line.iter().skip(1).filter_map(|word| word.to_str()) {
+        let Some(found) = command.find_subcommand(word).cloned() else {
+            break;
+        };
+        command = found;
+    }
+    command
+        .get_arguments()
+        .any(|argument| argument.get_long() == Some(option))
+}
+
+/// The error of a line with a hint, if it is about a word of another program. An unknown long option of a command that takes `--set` may be
+/// the name of a parameter.
+pub fn with_hint(mut error: Error, line: &[OsString]) -> Error {
     let (words, written, similar) = match error.kind() {
         ErrorKind::UnknownArgument => (OPTIONS, ContextKind::InvalidArg, ContextKind::SuggestedArg),
         ErrorKind::InvalidSubcommand => (
@@ -87,13 +110,15 @@ pub fn with_hint(mut error: Error) -> Error {
         return error;
     };
     let word = word.split('=').next().unwrap_or(word).to_owned();
-    let known = words.iter().find(|(known, _)| known.contains(&&*word));
+    let known = words.iter().find(|(known, hint)| {
+        known.contains(&&*word) && option_of(hint).is_none_or(|option| takes(line, option))
+    });
     let hint = match known {
         Some((_, hint)) => {
             error.remove(similar);
             (*hint).to_owned()
         }
-        None if word.starts_with("--") => {
+        None if word.starts_with("--") && takes(line, "set") => {
             format!(
                 "a value of the plan is set with `--set {}=VALUE`",
                 &word[2..]
@@ -111,13 +136,13 @@ pub fn with_hint(mut error: Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::commands::Arguments;
-    use clap::{CommandFactory as _, Parser as _};
+    use clap::Parser as _;
 
     fn shown(line: &str) -> String {
         let words = ["psd"].into_iter().chain(line.split(' '));
-        let error = Arguments::try_parse_from(words).expect_err("an error");
-        with_hint(error).to_string()
+        let line: Vec<OsString> = words.map(OsString::from).collect();
+        let error = Arguments::try_parse_from(&line).expect_err("an error");
+        with_hint(error, &line).to_string()
     }
 
     #[test]
@@ -134,8 +159,31 @@ mod tests {
             list.contains("`ls -t runs`") && !list.contains("lsp"),
             "{list}"
         );
+        let dry = shown("run plan.psd --dry-run");
+        assert!(dry.contains("`psd check --explain PLAN`"), "{dry}");
         let near = shown("chek plan.psd");
         assert!(near.contains("'check'"), "{near}");
+    }
+
+    /// A hint names an option that its command takes.
+    #[test]
+    fn a_hint_is_true_of_its_command() {
+        for line in [
+            "fmt plan.psd --speed 1",
+            "verify run --quiet",
+            "fmt -o plan.psd",
+        ] {
+            let shown = shown(line);
+            assert!(!shown.contains("`--"), "{line}: {shown}");
+        }
+        for (_, hint) in OPTIONS {
+            let option = option_of(hint);
+            let has = |line: &[&str]| {
+                let line: Vec<OsString> = line.iter().map(OsString::from).collect();
+                option.is_none_or(|option| takes(&line, option))
+            };
+            assert!(has(&["psd", "run"]) || has(&["psd", "check"]), "{hint}");
+        }
     }
 
     /// A hint for a word that psd has would never be seen.

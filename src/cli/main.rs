@@ -27,11 +27,12 @@ fn main() -> ExitCode {
 fn run_command_line(arguments: impl Iterator<Item = OsString>) -> Exit {
     // If the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig puts it on hold.
     let _ = operator::watch::catch_full_files();
-    let arguments = match commands::Arguments::try_parse_from(arguments) {
+    let line: Vec<OsString> = arguments.collect();
+    let arguments = match commands::Arguments::try_parse_from(&line) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version go to stdout, errors of the command line to stderr. A closed pipe is not an error.
-            let error = hints::with_hint(error);
+            let error = hints::with_hint(error, &line);
             let _ = error.print();
             return if error.use_stderr() {
                 Exit::Wrong
