@@ -1,4 +1,4 @@
-//! Specimens that are on the rig at a scale, or as one of several equal parts: what a reader is told beside their numbers. In: a frame.
+//! Specimens that are on the rig at a scale, or as one of several equal parts: the words beside their numbers. In: a frame.
 //! Out: words.
 
 use crate::{Frame, Plan, Scale};

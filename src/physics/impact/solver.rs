@@ -64,11 +64,7 @@ impl<V: Vector> Reach<V> {
             factor.solve(&mut unit);
             unit.as_slice()[struck]
         };
-        let mut net = form.matrices.stiffness.clone();
-        if let Some(gravity) = &form.matrices.gravity {
-            net.add_scaled(gravity, -1.0);
-        }
-        let stiffness = Factor::of(&net).ok()?;
+        let stiffness = Factor::of(&form.matrices.net(&form.matrices.stiffness)).ok()?;
         let (compliance, mobility) = (unit(&stiffness), unit(form.mass_factor()));
         Some(Self {
             stiffness,

@@ -75,15 +75,13 @@ impl<V: HasTangents> Solver<V> {
         <V::Matrix as Matrix>::Factor::of(&matrices.mass).map_err(FrameError::Mass)?;
         let form = StepForm::new(matrices, operator, input.integrator, input.time_step)
             .map_err(FrameError::Step)?;
-        let net = matrices.gravity.as_ref().map(|gravity| {
-            let mut net = force.clone();
-            gravity.mul_add(-1.0, &displacement, &mut net);
-            net
-        });
-        let mut gravity_force = V::default();
+        let (mut gravity_force, mut net) = (V::default(), None);
         if let Some(gravity) = &matrices.gravity {
             gravity_force = zero();
             gravity.product(&displacement, &mut gravity_force);
+            let mut force = force.clone();
+            force.update([&gravity_force], |force, [gravity]| force - gravity);
+            net = Some(force);
         }
         let mut acceleration = zero();
         acceleration.update(

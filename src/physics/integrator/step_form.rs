@@ -150,15 +150,14 @@ impl<V: Vector> StepForm<V> {
         time_step: f64,
     ) -> Result<Self, NotPositiveDefinite> {
         let order = matrices.mass.rows();
-        let mut net = operator.clone();
-        if let Some(gravity) = &matrices.gravity {
-            net.add_scaled(gravity, -1.0);
-            if integrator == Integrator::Tangent {
-                // K_t ≥ 0, so that M̂ stays positive definite if M − ¼Δt²G is.
-                let mut least = matrices.mass.clone();
-                least.add_scaled(gravity, -0.25 * time_step * time_step);
-                <V::Matrix as Matrix>::Factor::of(&least)?;
-            }
+        let net = matrices.net(operator);
+        if let Some(gravity) = &matrices.gravity
+            && integrator == Integrator::Tangent
+        {
+            // K_t ≥ 0, so that M̂ stays positive definite if M − ¼Δt²G is.
+            let mut least = matrices.mass.clone();
+            least.add_scaled(gravity, -0.25 * time_step * time_step);
+            <V::Matrix as Matrix>::Factor::of(&least)?;
         }
         let mut effective = V::Matrix::zero_of(order);
         let coefficients = Coefficients::of(integrator);

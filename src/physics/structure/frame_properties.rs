@@ -44,10 +44,6 @@ impl FrameProperties {
         let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
         let weights = frame.gravity_stiffness();
         let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
-        let modes = match &gravity {
-            Some(gravity) => modes(&mass, &net(&stiffness, Some(gravity)))?,
-            None => unloaded,
-        };
         let computes = frame
             .storeys
             .iter()
@@ -58,13 +54,19 @@ impl FrameProperties {
         } else {
             stiffness.clone()
         };
+        let matrices = FrameMatrices {
+            mass,
+            damping,
+            stiffness,
+            gravity,
+        };
+        let modes = if matrices.gravity.is_some() {
+            modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
+        } else {
+            unloaded
+        };
         Ok(Self {
-            matrices: FrameMatrices {
-                mass,
-                damping,
-                stiffness,
-                gravity,
-            },
+            matrices,
             operator,
             modes,
         })
@@ -99,7 +101,7 @@ impl FrameProperties {
         };
         let order = self.matrices.order();
         let mut mass = SymmetricBand::zero(order + 1, self.matrices.mass.half_bandwidth());
-        let own = net(&self.matrices.stiffness, self.matrices.gravity.as_ref());
+        let own = self.matrices.net(&self.matrices.stiffness);
         let mut stiffness =
             SymmetricBand::zero(order + 1, own.half_bandwidth().max(order - struck));
         for row in 0..order {
@@ -138,8 +140,7 @@ impl FrameProperties {
         integrator: Integrator,
         virtual_specimen: Option<&Frame>,
     ) -> f64 {
-        let net = |stiffness| net(stiffness, self.matrices.gravity.as_ref());
-        let own = self.highest(&net(&self.operator));
+        let own = self.highest(&self.matrices.net(&self.operator));
         let mut met = Met {
             highest: own,
             shortfall: 0.0,
@@ -155,7 +156,7 @@ impl FrameProperties {
                     largest.unwrap_or(storey.operator_stiffness())
                 })
                 .collect();
-            met.highest = own.max(self.highest(&net(&storey_stiffness(&behaves))));
+            met.highest = own.max(self.highest(&self.matrices.net(&storey_stiffness(&behaves))));
             let storeys = || frame.storeys.iter().zip(&behaves);
             // G is in both stiffnesses, and cancels in their difference.
             let mut weights = frame.gravity_stiffness();
@@ -184,13 +185,4 @@ impl FrameProperties {
             (std::f64::consts::TAU / modes.shortest_period()).powi(2)
         })
     }
-}
-
-/// K − G.
-fn net(stiffness: &SymmetricBand, gravity: Option<&SymmetricBand>) -> SymmetricBand {
-    let mut net = stiffness.clone();
-    if let Some(gravity) = gravity {
-        net.add(gravity, -1.0);
-    }
-    net
 }

@@ -1,6 +1,6 @@
 //! Mass, damping, stiffness and geometric stiffness of a structure. In: numbers, or bands. Out: loads of a ground motion. It integrates nothing.
 
-use super::matrix::{SymmetricBand, Vector};
+use super::matrix::{Matrix as _, SymmetricBand, Vector};
 
 /// M, C, K and G of a structure, of one order \[kg\], \[N·s/m\], \[N/m\]: M Ẍ + C Ẋ + R(X) − G X = F.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,18 @@ pub struct Matrices<V: Vector> {
     pub stiffness: V::Matrix,
     /// G, the geometric stiffness of the weights; None without weights.
     pub gravity: Option<V::Matrix>,
+}
+
+impl<V: Vector> Matrices<V> {
+    /// A stiffness of this structure under its weights, K − G.
+    #[must_use]
+    pub fn net(&self, stiffness: &V::Matrix) -> V::Matrix {
+        let mut net = stiffness.clone();
+        if let Some(gravity) = &self.gravity {
+            net.add_scaled(gravity, -1.0);
+        }
+        net
+    }
 }
 
 /// Those of a frame.

@@ -61,21 +61,26 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         stepping: stepping?,
         scale: scale?,
         duration: duration?,
-        until: Some(until?).filter(|drift| drift.is_finite()),
+        until: until?,
     }))
 }
 
-/// The drift that ends the run \[m\]; infinite if the run has its whole duration.
-fn until(checker: &mut Checker, block: usize) -> Option<f64> {
+/// The drift that ends the run \[m\]; `Some(None)` if the run has its whole duration.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+fn until(checker: &mut Checker, block: usize) -> Option<Option<f64>> {
     let Some((entry, _)) = checker.field(block, schema::UNTIL.name) else {
-        return Some(f64::INFINITY);
+        return Some(None);
     };
     let context = checker.context_of(block, entry);
     let chosen = checker.choice(block, schema::UNTIL.name)?;
     if chosen.variant.name != methods::DRIFT_REACHED.name {
-        return Some(f64::INFINITY);
+        return Some(None);
     }
-    checker.constant_argument(&chosen, methods::REACHED.name, context)
+    let drift = checker.constant_argument(&chosen, methods::REACHED.name, context)?;
+    Some(Some(drift))
 }
 
 /// One number is for Rayleigh damping; a list has one ratio for each mode.

@@ -81,23 +81,23 @@ fn at_scale(plan: &Plan, scale: Scale) -> Plan {
     plan
 }
 
+/// The same prototype, with its specimens at every scale.
+fn moves_as_at_full_scale(plan: &Plan, case: &str) {
+    let full = run_unwatched(plan);
+    for scale in SCALES {
+        let found = run_unwatched(&at_scale(plan, scale));
+        same(&found, &full, 0, 1e-12, &format!("{case}, {scale:?}"));
+    }
+}
+
 #[test]
 fn the_prototype_moves_as_at_full_scale() {
     for model in [elastic, bilinear, bouc_wen] {
         for integrator in INTEGRATORS {
             for parts in [[TESTED; 3]].into_iter().chain(SPLITS) {
                 let plan = shaken(parts, model, integrator);
-                let full = run_unwatched(&plan);
-                for scale in SCALES {
-                    let case = format!("{integrator:?}, {:?}, {parts:?}, {scale:?}", model(1.0));
-                    same(
-                        &run_unwatched(&at_scale(&plan, scale)),
-                        &full,
-                        0,
-                        1e-12,
-                        &case,
-                    );
-                }
+                let case = format!("{integrator:?}, {:?}, {parts:?}", model(1.0));
+                moves_as_at_full_scale(&plan, &case);
             }
         }
     }
@@ -109,17 +109,7 @@ fn a_prototype_with_weights_moves_as_at_full_scale() {
     for integrator in INTEGRATORS {
         for parts in [[TESTED; 3]].into_iter().chain(SPLITS) {
             let plan = weighed(shaken(parts, bilinear, integrator));
-            let full = run_unwatched(&plan);
-            for scale in SCALES {
-                let case = format!("{integrator:?}, {parts:?}, {scale:?}");
-                same(
-                    &run_unwatched(&at_scale(&plan, scale)),
-                    &full,
-                    0,
-                    1e-12,
-                    &case,
-                );
-            }
+            moves_as_at_full_scale(&plan, &format!("{integrator:?}, {parts:?}"));
         }
     }
 }
@@ -137,17 +127,7 @@ fn a_struck_prototype_moves_as_at_full_scale() {
             ),
         ] {
             let plan = struck(parts, floor, Integrator::Tangent, contact);
-            let full = run_unwatched(&plan);
-            for scale in SCALES {
-                let case = format!("{parts:?}, floor {floor}, {scale:?}");
-                same(
-                    &run_unwatched(&at_scale(&plan, scale)),
-                    &full,
-                    0,
-                    1e-12,
-                    &case,
-                );
-            }
+            moves_as_at_full_scale(&plan, &format!("{parts:?}, floor {floor}"));
         }
     }
 }
