@@ -86,10 +86,10 @@ impl Shown {
 mod tests {
     use super::*;
     use psd_plan::{Behaviour, Frame, Part, Storey};
-    use psd_testing::plans::empty_plan;
+    use psd_testing::plans::struck_frame;
 
     fn shown(parts: [Part; 3]) -> Shown {
-        let mut plan = empty_plan();
+        let mut plan = struck_frame();
         let storey = |part| Storey {
             part,
             ..Storey::new(1.0, 1e3, Behaviour::Elastic { stiffness: 1e3 })
