@@ -20,7 +20,7 @@ use psd_text::units::display::readable;
 pub struct Bar {
     counted: ProgressStyle,
     endless: ProgressStyle,
-    bar: Option<ProgressBar>,
+    drawn: Option<ProgressBar>,
     shown: Shown,
     /// The time left of the run, if it is known.
     pub left: Option<Duration>,
@@ -36,7 +36,7 @@ impl Bar {
             // The style with a known number of steps, and without one.
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
-            bar: None,
+            drawn: None,
             shown,
             left: None,
         }
@@ -44,7 +44,7 @@ impl Bar {
 
     /// Removes the bar from the terminal.
     pub fn clear(&mut self) {
-        if let Some(bar) = self.bar.take() {
+        if let Some(bar) = self.drawn.take() {
             bar.finish_and_clear();
         }
     }
@@ -61,12 +61,12 @@ impl Observer for Bar {
         let bar =
             ProgressBar::with_draw_target(steps, ProgressDrawTarget::stderr()).with_style(style);
         bar.set_prefix(format!("{name}, {keyword}"));
-        self.bar = Some(bar);
+        self.drawn = Some(bar);
     }
 
     fn step_done(&mut self, report: &StepReport) {
         let step = report.step;
-        let Some(bar) = &self.bar else { return };
+        let Some(bar) = &self.drawn else { return };
         bar.set_position(step);
         // Most steps are never drawn: the text is made for some only.
         if step.is_multiple_of(16) {
@@ -85,7 +85,7 @@ impl Observer for Bar {
     }
 
     fn studying(&mut self, done: usize, of: usize) {
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.drawn {
             bar.set_message(format!("uncertainty: {done} of {of} runs re-integrated"));
         }
     }
