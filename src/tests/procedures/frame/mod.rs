@@ -1,9 +1,9 @@
 //! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, and weights on the floors.
 
 pub(crate) mod escalate;
-mod gravity;
-mod hybrid;
-mod scaled;
+pub(crate) mod gravity;
+pub(crate) mod hybrid;
+pub(crate) mod scaled;
 mod unloading;
 
 use crate::procedures::unload::run::{of_frame, to_rest};

@@ -55,7 +55,7 @@ fn model_on_the_rig(behaviour: &Behaviour, scale: &Scale) -> Behaviour {
 }
 
 /// The same test with every tested storey at a scale, on the rig that it needs. Numbers of the prototype do not change.
-fn at_scale(plan: &Plan, scale: Scale) -> Plan {
+pub(crate) fn at_scale(plan: &Plan, scale: Scale) -> Plan {
     let mut plan = plan.clone();
     let frame = plan.specimens[0].frame.as_ref().unwrap();
     let (length, force) = (scale.displacement, scale.force / scale.represents);
