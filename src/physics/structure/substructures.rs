@@ -169,6 +169,16 @@ impl Assemblies {
         }
     }
 
+    /// Whether every storey is tested, and all stand on each other: the specimen is the frame, at full scale or not.
+    #[must_use]
+    pub fn is_whole_frame(&self) -> bool {
+        let storeys = self.supports.iter().skip(1);
+        storeys.fold(
+            self.supports.first() == Some(&Support::StrongFloor),
+            |is, it| is && *it == Support::Below,
+        )
+    }
+
     /// Actuators, each with a load cell.
     #[must_use]
     pub fn axes(&self) -> usize {
