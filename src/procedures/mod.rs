@@ -361,8 +361,19 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
 pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Table<'a>> {
     let name = procedure.name.clone();
     let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
-    let scaled = assemblies.filter(Assemblies::is_scaled);
-    match &procedure.history {
+    let scaled = assemblies.clone().filter(Assemblies::is_scaled);
+    let of_elements = match &procedure.history {
+        History::Shake(history) => {
+            let number = |step: usize| history.steps[step].step;
+            shake::tables::of_elements(&name, &history.steps, number, assemblies)
+        }
+        History::Impact(history) => history.frame.as_ref().and_then(|frame| {
+            let number = |step: usize| history.steps[step].step;
+            shake::tables::of_elements(&name, &frame.floors, number, assemblies)
+        }),
+        _ => None,
+    };
+    let mut tables = match &procedure.history {
         History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
         History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
         History::Impact(history) => vec![impact::tables::table(name, history, scaled)],
@@ -373,7 +384,9 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
         History::Inspect => Vec::new(),
-    }
+    };
+    tables.extend(of_elements);
+    tables
 }
 
 /// Check and accepted results: the numeric columns of the tables of a block, each once; none without tables.
@@ -466,12 +479,11 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
             }
         }
         History::Shake(shake) => {
-            let steps = shake.steps.iter();
-            steps.for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force));
+            common::reached::of_floors(shake.steps.iter().map(|step| &step.floors), give);
         }
         History::Unload(steps) | History::FrameUnload(steps) => {
             let steps = steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+            steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
         }
         History::Inspect => {}
     }

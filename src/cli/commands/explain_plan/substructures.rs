@@ -9,6 +9,9 @@ use psd_text::units::display::stated;
 
 /// A row for each floor with its axis, and one for each storey below it: `║` is on the rig, `┆` is computed.
 pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
+    if !frame.elements.is_empty() {
+        return elements(frame);
+    }
     let mut tested = on_the_rig(frame).zip(1..);
     let storeys = frame.storeys.iter().zip(1..);
     let storeys = storeys.map(|(storey, number)| {
@@ -45,6 +48,38 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
     rows.reverse();
     rows.push(vec!["ground".to_owned(), "──┴──".to_owned()]);
     rows
+}
+
+/// A row for each element of a frame of matrices.
+fn elements(frame: &Frame) -> Vec<Vec<String>> {
+    let mut axes = 1..;
+    let elements = frame.elements.iter().zip(1..).map(|(element, number)| {
+        let stiffness = |value| stated(value, Dimension::STIFFNESS);
+        let end = |end: Option<usize>| end.map_or("ground".to_owned(), |end| (end + 1).to_string());
+        let [from, to] = element.ends.map(end);
+        let own = stiffness(element.stiffness);
+        let (column, mover, text) = match element.part {
+            Part::Computed => ("┄┄", String::new(), format!("computed, {own}")),
+            Part::Tested { scale, .. } => {
+                let on_the_rig = stiffness(scale.stiffness_on_the_rig(element.stiffness));
+                let text = format!("tested{}, {own}", at_scale(&scale));
+                let text = if on_the_rig == own {
+                    text
+                } else {
+                    format!("{text}; {on_the_rig} on the rig")
+                };
+                let axis = axes.next().unwrap_or(0);
+                ("══", format!("◄─ axis {axis}"), text)
+            }
+        };
+        vec![
+            format!("element {number}"),
+            format!("{from} {column} {to}"),
+            mover,
+            text,
+        ]
+    });
+    elements.collect()
 }
 
 #[cfg(test)]

@@ -159,13 +159,14 @@ fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<
             .iter()
             .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
     };
-    let is_measured = steps
-        .frame
-        .storeys
-        .iter()
-        .any(|storey| storey.damping > 0.0);
+    let is_measured = steps.frame.members().any(|member| member.damping > 0.0);
     if computed && is_measured && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
-        let fields = [frames::DAMPING_RATIO.name, specimen::STOREYS.name];
+        let members = if steps.frame.elements.is_empty() {
+            specimen::STOREYS.name
+        } else {
+            specimen::ELEMENTS.name
+        };
+        let fields = [frames::DAMPING_RATIO.name, members];
         warn_of_damping_twice(checker, block, steps.specimen, fields);
     }
 }

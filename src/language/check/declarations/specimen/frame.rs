@@ -9,6 +9,7 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
 use crate::codes::{E405, E409, E621, E622, E623, E668, E670};
+
 use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
@@ -20,14 +21,16 @@ use psd_text::units::Dimension;
 use psd_text::units::display::significant;
 
 use super::behaviour::{self, Material, Written};
+use super::elements::{ELEMENT, with_elements};
 use super::matrix;
 use super::scale::{AnotherScaleInOneSpecimen, StoreyOfAnotherScale, scale};
 
 /// Fields that make a specimen a frame.
-pub const FIELDS: [&str; 3] = [
+pub const FIELDS: [&str; 4] = [
     fields::STOREYS.name,
     fields::MASS_MATRIX.name,
     fields::STIFFNESS_MATRIX.name,
+    fields::ELEMENTS.name,
 ];
 
 /// Relative difference up to which a stiffness equals that of its model: the last digits of a sum or a quotient.
@@ -70,7 +73,7 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     let frame = report_once(checker, block).and_then(|()| {
         match checker.field(block, fields::STOREYS.name) {
             Some(_) => storeys(checker, block).map(Frame::of_storeys),
-            None => matrices(checker, block),
+            None => matrices(checker, block).and_then(|frame| with_elements(checker, block, frame)),
         }
     });
     let frame = frame.map(Rc::new);
@@ -125,11 +128,13 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
     let storeys = checker.field(block, fields::STOREYS.name);
     let matrices = [fields::MASS_MATRIX.name, fields::STIFFNESS_MATRIX.name]
         .map(|field| checker.field(block, field));
-    let first = storeys.or(matrices[0]).or(matrices[1])?.1;
+    let elements = checker.field(block, fields::ELEMENTS.name);
+    let first = storeys.or(matrices[0]).or(matrices[1]).or(elements)?.1;
     let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.field(block, field));
     let beside_storeys = matrices
         .into_iter()
         .chain(of_matrices)
+        .chain([elements])
         .flatten()
         .filter(|_| storeys.is_some());
     let of_one = OF_ONE
@@ -154,8 +159,19 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
             given: &stiffness.key,
             missing: fields::MASS_MATRIX.name,
         }),
+        (None, [None, None]) => checker.fail(ElementsAlone {
+            span: first.key.span,
+        }),
         _ => Some(()),
     }
+}
+
+#[derive(Violation)]
+#[violation(E623, "`elements` requires `mass_matrix` and `stiffness_matrix`")]
+#[help("add the matrices of the computed part, or write the frame as `storeys`")]
+struct ElementsAlone {
+    #[label("matrices missing")]
+    span: Span,
 }
 
 struct MatrixUncertaintyAlone<'a> {
@@ -355,16 +371,17 @@ struct ApartFromNothing {
 }
 
 #[derive(Violation)]
-#[violation(E668, "storey {number} is computed, but has `{field}`")]
+#[violation(E668, "{word} {number} is computed, but has `{field}`")]
 #[help(
     "remove `{field}`: it is in the force of a virtual rig; the frame's own damping is the `damping_ratio` of the procedure"
 )]
 struct RigDampingOfComputed<'a> {
+    word: &'a str,
     number: usize,
     field: &'a str,
     #[label("of a virtual rig")]
     span: Span,
-    #[label("no rig carries the storey")]
+    #[label("no rig carries the {word}")]
     part: Span,
 }
 
@@ -405,8 +422,18 @@ struct StoreyWithoutStiffness {
     span: Span,
 }
 
+#[derive(Violation)]
+#[violation(E622, "element {number} has no stiffness")]
+#[help("add `stiffness: 3 MN/m`, or a `behaviour`")]
+struct ElementWithoutStiffness {
+    number: usize,
+    #[label("stiffness missing")]
+    span: Span,
+}
+
 /// A stiffness \[N/m\], by the name of its field, beside a model with a different initial stiffness \[N/m\].
 struct StoreyBendsOtherwise<'a> {
+    word: &'a str,
     number: usize,
     field: &'a str,
     stated: Spanned<f64>,
@@ -418,6 +445,7 @@ impl Violation for StoreyBendsOtherwise<'_> {
 
     fn diagnostic(self) -> Diagnostic {
         let Self {
+            word,
             number,
             field,
             stated,
@@ -431,7 +459,7 @@ impl Violation for StoreyBendsOtherwise<'_> {
         Diagnostic::new(
             Self::CODE,
             format!(
-                "storey {number}: stated stiffness {stated} differs from the \
+                "{word} {number}: stated stiffness {stated} differs from the \
      model's initial stiffness {initial}"
             ),
         )
@@ -446,21 +474,38 @@ impl Violation for StoreyBendsOtherwise<'_> {
     }
 }
 
-fn storey<'a>(
+/// The spring of a storey or of an element, with the model on the rig if it is tested.
+pub struct Spring {
+    /// \[N/m\]
+    pub stiffness: f64,
+    pub stiffness_uncertainty: f64,
+    pub behaviour: Behaviour,
+    /// \[N·s/m\]
+    pub damping: f64,
+    /// \[N\]
+    pub coulomb: f64,
+    pub part: Part,
+}
+
+/// The position of a storey or element in its list, from 1.
+#[derive(Clone, Copy)]
+pub struct Place {
+    pub word: &'static str,
+    pub number: usize,
+    pub at: Span,
+}
+
+/// The arguments that storeys and elements share. `stated` reads their stiffness: None from the behaviour.
+pub fn spring<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    number: usize,
-    at: Span,
+    Place { word, number, at }: Place,
     context: Context,
-) -> Option<Storey> {
-    let mass = checker.constant_argument(chosen, storey::MASS, context);
-    let mass_uncertainty = checker.constant_argument(chosen, storey::MASS_UNCERTAINTY, context);
+    stated: impl FnOnce(&mut Checker<'a>) -> Option<Option<f64>>,
+) -> Option<Spring> {
     let stiffness_uncertainty =
         checker.constant_argument(chosen, storey::STIFFNESS_UNCERTAINTY, context);
-    let height = checker.optional_argument(chosen, storey::HEIGHT, context);
-    let gravity = checker.constant_argument(chosen, storey::GRAVITY, context);
-    let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
-    let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
+    let stated = stated(checker);
     let behaviour = match chosen.find(storey::BEHAVIOUR) {
         Some((
             Field {
@@ -483,13 +528,13 @@ fn storey<'a>(
     let damping = checker.constant_argument(chosen, storey::DAMPING, context);
     let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
     let part = part(checker, chosen, context);
-    let (mass, height, gravity, behaviour, damping, coulomb) =
-        (mass?, height?, gravity?, behaviour?, damping?, coulomb?);
+    let (behaviour, damping, coulomb) = (behaviour?, damping?, coulomb?);
     let part = part?;
     let scale = part.scale();
     for (field, value) in [(storey::DAMPING, damping), (storey::COULOMB, coulomb)] {
         if part == Part::Computed && value != 0.0 {
             return checker.fail(RigDampingOfComputed {
+                word,
                 number,
                 field,
                 span: chosen.span(field).unwrap_or(at),
@@ -497,20 +542,15 @@ fn storey<'a>(
             });
         }
     }
-    let stiffness = match (total?, column?, &behaviour) {
-        (Some(_), Some(_), _) => {
-            let again = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
-            return checker.fail(StoreyStiffnessTwice {
-                number,
-                span: again,
-            });
+    let stiffness = match (stated?, &behaviour) {
+        (Some(stiffness), _) => stiffness,
+        (None, Some(behaviour)) => scale.stiffness_of_storey(behaviour.initial_stiffness()),
+        (None, None) if word == ELEMENT => {
+            return checker.fail(ElementWithoutStiffness { number, span: at });
         }
-        (Some(stiffness), None, _) => stiffness,
-        (None, Some(column), _) => 2.0 * column,
-        (None, None, Some(behaviour)) => scale.stiffness_of_storey(behaviour.initial_stiffness()),
-        (None, None, None) => return checker.fail(StoreyWithoutStiffness { number, span: at }),
+        (None, None) => return checker.fail(StoreyWithoutStiffness { number, span: at }),
     };
-    let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
+    let stiffness_uncertainty = stiffness_uncertainty?;
     let differs = |initial: f64| {
         let model = scale.stiffness_of_storey(initial);
         (stiffness - model).abs() > SAME * stiffness.max(model) + WITHIN * stiffness_uncertainty
@@ -526,6 +566,7 @@ fn storey<'a>(
         let (stated, model) = (Spanned::new(stiffness, given), Spanned::new(initial, bends));
         if scale != Scale::FULL {
             return checker.fail(StoreyOfAnotherScale {
+                word,
                 number,
                 stated,
                 model,
@@ -533,6 +574,7 @@ fn storey<'a>(
             });
         }
         return checker.fail(StoreyBendsOtherwise {
+            word,
             number,
             field,
             stated,
@@ -542,43 +584,94 @@ fn storey<'a>(
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic {
         stiffness: scale.stiffness_on_the_rig(stiffness),
     });
-    let stated = [
-        (
-            storey::MASS_UNCERTAINTY,
-            mass_uncertainty,
-            mass,
-            Dimension::MASS,
-        ),
+    not_too_uncertain(
+        checker,
+        chosen,
+        at,
         (
             storey::STIFFNESS_UNCERTAINTY,
             stiffness_uncertainty,
             stiffness,
             Dimension::STIFFNESS,
         ),
-    ];
-    for (field, uncertainty, value, dimension) in stated {
-        if uncertainty > MOST_UNCERTAIN * value {
-            let at = chosen.span(field).unwrap_or(at);
-            return checker.fail(TooUncertain {
-                field,
-                uncertainty,
-                value,
-                dimension,
-                span: at,
-            });
-        }
-    }
-    Some(Storey {
-        mass,
-        mass_uncertainty,
+    )?;
+    Some(Spring {
         stiffness,
         stiffness_uncertainty,
-        height,
-        gravity,
         behaviour,
         damping,
         coulomb,
         part,
+    })
+}
+
+/// A stated uncertainty is at most a part of its value: field, uncertainty, value, dimension.
+fn not_too_uncertain(
+    checker: &mut Checker,
+    chosen: &Chosen,
+    at: Span,
+    (field, uncertainty, value, dimension): (&'static str, f64, f64, Dimension),
+) -> Option<()> {
+    if uncertainty > MOST_UNCERTAIN * value {
+        return checker.fail(TooUncertain {
+            field,
+            uncertainty,
+            value,
+            dimension,
+            span: chosen.span(field).unwrap_or(at),
+        });
+    }
+    Some(())
+}
+
+fn storey<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    number: usize,
+    at: Span,
+    context: Context,
+) -> Option<Storey> {
+    let mass = checker.constant_argument(chosen, storey::MASS, context);
+    let mass_uncertainty = checker.constant_argument(chosen, storey::MASS_UNCERTAINTY, context);
+    let height = checker.optional_argument(chosen, storey::HEIGHT, context);
+    let gravity = checker.constant_argument(chosen, storey::GRAVITY, context);
+    let place = Place {
+        word: "storey",
+        number,
+        at,
+    };
+    let stated = |checker: &mut Checker<'a>| {
+        let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
+        let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
+        match (total?, column?) {
+            (Some(_), Some(_)) => {
+                let span = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
+                checker.fail(StoreyStiffnessTwice { number, span })
+            }
+            (total, column) => Some(total.or(column.map(|column| 2.0 * column))),
+        }
+    };
+    let spring = spring(checker, chosen, place, context, stated);
+    let (mass, mass_uncertainty, height, gravity) = (mass?, mass_uncertainty?, height?, gravity?);
+    let spring = spring?;
+    let of_mass = (
+        storey::MASS_UNCERTAINTY,
+        mass_uncertainty,
+        mass,
+        Dimension::MASS,
+    );
+    not_too_uncertain(checker, chosen, at, of_mass)?;
+    Some(Storey {
+        mass,
+        mass_uncertainty,
+        stiffness: spring.stiffness,
+        stiffness_uncertainty: spring.stiffness_uncertainty,
+        height,
+        gravity,
+        behaviour: spring.behaviour,
+        damping: spring.damping,
+        coulomb: spring.coulomb,
+        part: spring.part,
     })
 }
 
@@ -616,13 +709,10 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     let [Some(of_mass), Some(of_stiffness)] = matrix_uncertainty else {
         return None;
     };
-    let files = Some([mass_file, stiffness_file]);
     Some(Frame {
-        storeys: Vec::new(),
-        mass,
-        stiffness,
-        files,
+        files: Some([mass_file, stiffness_file]),
         matrix_uncertainty: [of_mass, of_stiffness],
+        ..Frame::of_matrices(mass, stiffness)
     })
 }
 
@@ -643,7 +733,15 @@ fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String
     let span = written.value.span;
     let name = checker.text_field(block, field)?;
     let file = checker.data_file(&name, span)?;
-    match matrix::read(&file.text) {
+    // Beside elements K may be singular: a part that elements alone hold.
+    let beside = field == fields::STIFFNESS_MATRIX.name
+        && checker.field(block, fields::ELEMENTS.name).is_some();
+    let read = if beside {
+        matrix::read_symmetric(&file.text)
+    } else {
+        matrix::read(&file.text)
+    };
+    match read {
         Ok(matrix) => Some((file.name, matrix)),
         Err(reason) => checker.fail(BadMatrix {
             file: &file.name,

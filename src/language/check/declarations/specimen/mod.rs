@@ -3,6 +3,7 @@
 mod backbone;
 mod beam;
 pub mod behaviour;
+mod elements;
 pub mod frame;
 mod matrix;
 mod portal;
