@@ -133,10 +133,11 @@ impl Violation for OneDegreeOfFreedom<'_> {
     E626,
     "rig `{rig}` moves nothing: every {word} of frame `{specimen}` is computed"
 )]
-#[help("write `part: tested` in a {word}, or leave `--rig` out for a simulation")]
+#[help("write `part: tested` in {one}, or leave `--rig` out for a simulation")]
 struct NothingOnTheRig<'a> {
     rig: &'a str,
     word: &'a str,
+    one: &'a str,
     specimen: &'a str,
     #[label("no tested {word}")]
     declared: Span,
@@ -186,6 +187,11 @@ fn nothing_tested(
         Some(rig) => checker.report(NothingOnTheRig {
             rig: &rig.plan.name,
             word,
+            one: if word == "storey" {
+                "a storey"
+            } else {
+                "an element"
+            },
             specimen: &specimen.name,
             declared,
         }),

@@ -401,7 +401,10 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
-        ProcedureBlock::Shake => shake::tables::columns(shake::tables::shake()),
+        ProcedureBlock::Shake => {
+            let of_floors = shake::tables::columns(shake::tables::shake());
+            [of_floors, numeric(&shake::tables::elements())].concat()
+        }
         ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Inspect => Vec::new(),
     };

@@ -11,7 +11,7 @@ use crate::structure::elements::Elements;
 use crate::structure::frame::{Frame, Member, Part};
 use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
-    damping_matrix, modes, storey_stiffness,
+    damping_matrix, modes, storey_stiffness, storeys_of,
 };
 
 /// A frame, ready to be integrated.
@@ -72,6 +72,12 @@ impl FrameProperties {
             elements,
             modes,
         })
+    }
+
+    /// Whether the tangent of each storey or element can be followed: a full matrix on the rig keeps its initial stiffness.
+    #[must_use]
+    pub fn has_tangents(&self) -> bool {
+        self.elements.is_some() || storeys_of(&self.matrices.stiffness).is_some()
     }
 
     /// A tenth of the shortest period \[s\] (Melo et al. 2006, sec. 5).

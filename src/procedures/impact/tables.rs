@@ -44,10 +44,11 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
     Number(columns::TRACKING_INDICATOR, |step| step.tracking.indicator),
 ];
 
-/// The numeric columns of both tables.
+/// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
     let of_floors = shake::tables::columns(shake::tables::struck());
-    [numeric(STEPS), of_floors].concat()
+    let of_elements = numeric(&shake::tables::elements());
+    [numeric(STEPS), of_floors, of_elements].concat()
 }
 
 /// The table under this name.

@@ -9,10 +9,10 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::Damping;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::StoreyReadings;
-use psd_physics::structure::{Damping, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::schema::{frames, methods};
 use psd_plan::{
@@ -101,9 +101,7 @@ impl FrameSteps {
         inputs: &mut Inputs<'_>,
     ) -> Result<Self, Stop> {
         let steps = Steps::evaluate(plan, times, properties.matrices.order(), inputs)?;
-        let has_tangents =
-            properties.elements.is_some() || storeys_of(&properties.matrices.stiffness).is_some();
-        let tangents = if has_tangents && plan.integrator == Integrator::Tangent {
+        let tangents = if properties.has_tangents() && plan.integrator == Integrator::Tangent {
             Tangents::Storeys {
                 largest_ratio: steps.max_tangent_ratio,
             }

@@ -12,7 +12,7 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
     if !frame.elements.is_empty() {
         return elements(frame);
     }
-    let mut tested = on_the_rig(frame).zip(1..);
+    let mut tested = on_the_rig(frame).map(|(_, stands)| stands).zip(1..);
     let storeys = frame.storeys.iter().zip(1..);
     let storeys = storeys.map(|(storey, number)| {
         let stiffness = |value| stated(value, Dimension::STIFFNESS);
@@ -20,7 +20,7 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
         let (column, mover, text) = match storey.part {
             Part::Computed => ("┆", String::new(), format!("computed, {own}")),
             Part::Tested { scale, .. } => {
-                let ((_, stands), axis) = tested.next().unwrap_or(((storey, true), 0));
+                let (stands, axis) = tested.next().unwrap_or((true, 0));
                 let base = if stands { ", on the strong floor" } else { "" };
                 let on_the_rig = stiffness(scale.stiffness_on_the_rig(storey.stiffness));
                 let text = format!("tested{}{base}, {own}", at_scale(&scale));

@@ -264,9 +264,10 @@ fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> V
     over_time(y, curves.collect())
 }
 
-/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
+/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor or element.
 fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(usize, Points)> {
-    let mut curves: Vec<(usize, PointCollector)> = shown(floors(steps))
+    let count = steps.first().map_or(0, |step| read(step).len());
+    let mut curves: Vec<(usize, PointCollector)> = shown(count)
         .into_iter()
         .map(|floor| (floor, PointCollector::default()))
         .collect();

@@ -72,13 +72,7 @@ pub(crate) fn chart(
             charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
             format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
-        FigureKind::Hysteresis => (
-            charts::hysteresis(&history.steps),
-            format!(
-                "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
-                storey_shear(run)
-            ),
-        ),
+        FigureKind::Hysteresis => (charts::hysteresis(&history.steps), loops(run, name, chosen)),
         FigureKind::BaseShear => (
             charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
@@ -111,6 +105,21 @@ pub(crate) fn unloading_chart(
             ),
         )
     })
+}
+
+/// The caption of the loops.
+pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
+    let frame = run.plan.frame_on_the_rig();
+    if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        let force = measured("force of each element", frame);
+        return format!(
+            "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element."
+        );
+    }
+    format!(
+        "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
+        storey_shear(run)
+    )
 }
 
 /// The storey shear of a caption, with what of it was measured.
