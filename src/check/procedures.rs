@@ -9,7 +9,7 @@ use psd_language::codes::E671;
 use psd_plan::schema::Kind;
 use psd_plan::schema::procedures::SPECIMEN;
 use psd_plan::schema::rig::AXES;
-use psd_plan::{Frame, Procedure, ProcedureKind, Specimen};
+use psd_plan::{Frame, Procedure, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -222,7 +222,7 @@ pub fn check_axes(
     if frame.is_some_and(|frame| !frame.elements.is_empty()) {
         for (block, procedure) in procedures {
             let kind = procedure.as_ref().map(|procedure| &procedure.kind);
-            if let Some(kind @ (ProcedureKind::Unload(_) | ProcedureKind::Escalate(_))) = kind {
+            if let Some(kind) = kind.filter(|kind| procedures::facts_of(kind).unloads_storeys) {
                 checker.report(UnloadsElements {
                     keyword: kind.keyword(),
                     specimen: &specimen.name,

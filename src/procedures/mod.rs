@@ -14,6 +14,8 @@ pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
 
+use std::iter::once;
+
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
@@ -362,31 +364,29 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
     let name = procedure.name.clone();
     let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
     let scaled = assemblies.clone().filter(Assemblies::is_scaled);
-    let of_elements = match &procedure.history {
-        History::Shake(history) => {
-            let number = |step: usize| history.steps[step].step;
-            shake::tables::of_elements(&name, &history.steps, number, assemblies)
-        }
-        History::Impact(history) => history.frame.as_ref().and_then(|frame| {
-            let number = |step: usize| history.steps[step].step;
-            shake::tables::of_elements(&name, &frame.floors, number, assemblies)
-        }),
-        _ => None,
-    };
-    let mut tables = match &procedure.history {
+    match &procedure.history {
         History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
         History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
-        History::Impact(history) => vec![impact::tables::table(name, history, scaled)],
-        History::Shake(history) => vec![shake::tables::table(name, history, scaled)],
+        History::Impact(history) => {
+            let of_elements = impact::tables::of_elements(&name, history, assemblies);
+            once(impact::tables::table(name, history, scaled))
+                .chain(of_elements)
+                .collect()
+        }
+        History::Shake(history) => {
+            let number = |step: usize| history.steps[step].step;
+            let of_elements = shake::tables::of_elements(&name, &history.steps, number, assemblies);
+            once(shake::tables::table(name, history, scaled))
+                .chain(of_elements)
+                .collect()
+        }
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => escalate::tables::tables(name, history, scaled.as_ref()),
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
         History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
         History::Inspect => Vec::new(),
-    };
-    tables.extend(of_elements);
-    tables
+    }
 }
 
 /// Check and accepted results: the numeric columns of the tables of a block, each once; none without tables.

@@ -3,8 +3,10 @@
 //!
 //! R = K x + Σ b f(bᵀx), where b is +1 at the second end of an element, −1 at the first, and 0 elsewhere. The ground has no entry.
 
-use super::frame::{ElementEnds, Frame};
-use super::{RowsError, SymmetricBand};
+use super::SymmetricBand;
+
+/// The degrees of freedom, from 0, that a storey or an element joins: from the first to the second. None is the ground.
+pub type ElementEnds = [Option<usize>; 2];
 
 /// Displacement of the second end relative to the first, bᵀx \[m\].
 #[must_use]
@@ -75,26 +77,6 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// None for a frame without elements.
-    ///
-    /// # Errors
-    /// The stiffness of the files is not square or not symmetric.
-    pub fn of(frame: &Frame) -> Result<Option<Self>, RowsError> {
-        if frame.elements.is_empty() {
-            return Ok(None);
-        }
-        let elements = || frame.elements.iter();
-        Ok(Some(Self {
-            ends: elements().map(|element| element.ends).collect(),
-            stiffness: elements().map(|element| element.stiffness).collect(),
-            operator_stiffness: frame
-                .members()
-                .map(|member| member.operator_stiffness())
-                .collect(),
-            matrix: SymmetricBand::from_dense(&frame.computed_stiffness)?,
-        }))
-    }
-
     /// K + Σ k b bᵀ with these stiffnesses of the elements \[N/m\] into `operator`.
     pub(crate) fn compose(&self, stiffness: &[f64], operator: &mut SymmetricBand) {
         operator.copy_from(&self.matrix);

@@ -1,7 +1,7 @@
 //! Frames of storeys: many degrees of freedom, one for each floor, counted from the ground up. A frame has a matrix of mass and one of
 //! stiffness. A frame that is given by its matrices can have elements beside them. It computes no motion.
 
-use super::elements::add_springs;
+use super::elements::{ElementEnds, Elements, add_springs};
 use super::shear_building::{shears, storey_stiffness};
 use super::{RowsError, SymmetricBand};
 use crate::specimen::Behaviour;
@@ -66,9 +66,6 @@ pub struct Element {
     pub coulomb: f64,
     pub part: Part,
 }
-
-/// The degrees of freedom, from 0, that a storey or an element joins: from the first to the second. None is the ground.
-pub type ElementEnds = [Option<usize>; 2];
 
 /// A storey or an element: a restoring force between two degrees of freedom, against the difference of their displacements.
 #[derive(Clone, Copy, Debug)]
@@ -292,6 +289,25 @@ impl Frame {
             damping: element.damping,
             coulomb: element.coulomb,
             part: element.part,
+        }))
+    }
+
+    /// The layout of its elements; None without any.
+    ///
+    /// # Errors
+    /// The stiffness of the files is not square or not symmetric.
+    pub fn elements(&self) -> Result<Option<Elements>, RowsError> {
+        if self.elements.is_empty() {
+            return Ok(None);
+        }
+        let members = || self.members();
+        Ok(Some(Elements {
+            ends: members().map(|member| member.ends).collect(),
+            stiffness: members().map(|member| member.stiffness).collect(),
+            operator_stiffness: members()
+                .map(|member| member.operator_stiffness())
+                .collect(),
+            matrix: SymmetricBand::from_dense(&self.computed_stiffness)?,
         }))
     }
 

@@ -47,7 +47,7 @@ impl FrameProperties {
         let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
         let weights = frame.gravity_stiffness();
         let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
-        let elements = Elements::of(frame)?;
+        let elements = frame.elements()?;
         let computes = frame.members().any(|member| member.part == Part::Computed);
         let operator = if computes {
             let members = frame.members().map(|member| member.operator_stiffness());

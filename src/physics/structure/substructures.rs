@@ -158,7 +158,7 @@ impl Assemblies {
     pub fn of(frame: &Frame) -> Option<Self> {
         let (supports, scales) = (supports(frame), scales(frame));
         // A stiffness that is no matrix has no properties either: nothing is integrated with it.
-        if let Ok(Some(elements)) = Elements::of(frame) {
+        if let Ok(Some(elements)) = frame.elements() {
             return Some(Self {
                 supports,
                 scales,

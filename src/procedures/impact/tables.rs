@@ -51,6 +51,17 @@ pub(crate) fn columns() -> Vec<Column> {
     [numeric(STEPS), of_floors, of_elements].concat()
 }
 
+/// The table of the elements of a frame of matrices; None without elements.
+pub(crate) fn of_elements<'a>(
+    name: &str,
+    history: &'a ImpactHistory,
+    assemblies: Option<Assemblies>,
+) -> Option<Table<'a>> {
+    let frame = history.frame.as_ref()?;
+    let number = |step: usize| history.steps[step].step;
+    shake::tables::of_elements(name, &frame.floors, number, assemblies)
+}
+
 /// The table under this name.
 pub(crate) fn table(
     name: String,

@@ -11,11 +11,8 @@ use psd_plan::{Element, Frame, MOST_STOREYS, Part};
 use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
 
-use super::frame::{Place, Spring, spring};
 use super::matrix;
-
-/// The word for one of them.
-pub const ELEMENT: &str = "element";
+use super::spring::{ELEMENT, Place, Spring, spring};
 
 #[derive(Violation)]
 #[violation(E405, "too many elements: {found} (at most {most})")]

@@ -8,6 +8,7 @@ pub mod frame;
 mod matrix;
 mod portal;
 mod scale;
+mod spring;
 mod table_file;
 
 use crate::check::checker::Checker;
