@@ -204,8 +204,9 @@ fn solved(a: &[[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
         b.swap(pivot, largest.unwrap());
         for row in pivot + 1..3 {
             let factor = a[row][pivot] / a[pivot][pivot];
-            for column in pivot..3 {
-                a[row][column] -= factor * a[pivot][column];
+            let of_pivot = a[pivot];
+            for (entry, of_pivot) in a[row].iter_mut().zip(of_pivot).skip(pivot) {
+                *entry -= factor * of_pivot;
             }
             b[row] -= factor * b[pivot];
         }
