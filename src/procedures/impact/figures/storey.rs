@@ -104,7 +104,7 @@ pub(crate) fn chart(
         ),
         FigureKind::Tracking => (
             shaded(history, shake::figures::charts::tracking(&frame.floors)),
-            shake::figures::followed(name, chosen),
+            shake::figures::followed(run, name, chosen),
         ),
         _ => return None,
     })

@@ -84,7 +84,10 @@ pub(crate) fn chart(
             charts::energy(history),
             format!("{name}: input energy of the ground motion and its parts."),
         ),
-        FigureKind::Tracking => (charts::tracking(&history.steps), followed(name, chosen)),
+        FigureKind::Tracking => (
+            charts::tracking(&history.steps),
+            followed(run, name, chosen),
+        ),
         _ => return None,
     })
 }
@@ -138,9 +141,15 @@ pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
 }
 
 /// The caption of the tracking of a frame.
-pub(crate) fn followed(name: &str, chosen: &str) -> String {
+pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
+    let frame = run.plan.frame_on_the_rig();
+    let of = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        "element"
+    } else {
+        "floor"
+    };
     format!(
-        "{name}: tracking error of each floor's actuator{chosen}, and the tracking indicator of all of them over the \
+        "{name}: tracking error of each {of}'s actuator{chosen}, and the tracking indicator of all of them over the \
          largest command; a falling indicator shows that lag adds energy to the test."
     )
 }
