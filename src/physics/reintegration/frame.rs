@@ -36,7 +36,7 @@ pub struct FrameRun {
     pub steps: u64,
     /// The elements of a frame of matrices.
     pub elements: Option<Elements>,
-    /// The factor on the force of every storey that is computed, and at last that on the stiffness of the files beside elements; empty
+    /// The factor on the stiffness of every storey that is computed, and at last that on the stiffness of the files beside elements; empty
     /// for 1.
     pub computed_factors: Vec<f64>,
     /// Of each storey, as the run used them.

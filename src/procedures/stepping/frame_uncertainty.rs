@@ -216,7 +216,7 @@ impl<'run> FrameUncertainty<'run> {
         )
     }
 
-    /// The factor on the force of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is. That of
+    /// The factor on the stiffness of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is. That of
     /// the stiffness of the files beside elements is the last.
     pub fn computed_factors(&self, moved: &Frame) -> Vec<f64> {
         let Some(frame) = self.frame else {

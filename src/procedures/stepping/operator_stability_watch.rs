@@ -228,7 +228,7 @@ impl StifferSprings {
             gravity: 0.0,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
-            noise: noise_of(&start.readings[0]),
+            noise: noise_of(&start.resolved[0]),
             moving: plan.mode != Mode::StepAndPause,
         };
         Self::of(vec![(
@@ -266,7 +266,7 @@ impl StifferSprings {
                     moving: plan.mode != Mode::StepAndPause,
                     mobility: ends.map(floor).sum(),
                     time_step,
-                    noise: noise_of(&start.readings[element]),
+                    noise: noise_of(&start.resolved[element]),
                 };
                 (
                     format!("element {}", element + 1),
@@ -290,7 +290,7 @@ impl StifferSprings {
                 moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
-                noise: noise_of(&start.readings[storey]),
+                noise: noise_of(&start.resolved[storey]),
             };
             (
                 format!("storey {}", storey + 1),

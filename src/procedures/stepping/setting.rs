@@ -131,6 +131,8 @@ pub(crate) struct Start {
     pub readings: Vec<StoreyReadings>,
     /// Those of a frame of matrices there.
     pub elements: Vec<ElementReading>,
+    /// The same with the resolution of the forces as a part of their noise.
+    pub resolved: Vec<StoreyReadings>,
 }
 
 impl Start {

@@ -89,6 +89,7 @@ pub(crate) fn run<S: Stepped>(
         reading,
         readings: session.storey_readings(),
         elements: session.elements_read(),
+        resolved: session.resolved_storey_readings(),
     };
     let (mut stepped, stiffer) = begin(&start)?;
     let monitors = Monitors::new(

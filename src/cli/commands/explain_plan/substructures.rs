@@ -1,37 +1,20 @@
 //! The structure of a hybrid test, drawn: floors from the highest down, storeys that are tested or computed, axes, scales. In: a frame. Out:
 //! rows of text.
 
-use psd_physics::structure::substructures::on_the_rig;
-use psd_plan::scaled::at_scale;
-use psd_plan::{Frame, Part};
-use psd_text::units::Dimension;
-use psd_text::units::display::stated;
+use psd::report::wording::specimen::{DrawnStorey, drawn_storeys};
+use psd_plan::{Element, Frame};
 
 /// A row for each floor with its axis, and one for each storey below it: `║` is on the rig, `┆` is computed.
 pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
     if !frame.elements.is_empty() {
         return elements(frame);
     }
-    let mut tested = on_the_rig(frame).map(|(_, stands)| stands).zip(1..);
-    let storeys = frame.storeys.iter().zip(1..);
-    let storeys = storeys.map(|(storey, number)| {
-        let stiffness = |value| stated(value, Dimension::STIFFNESS);
-        let own = stiffness(storey.stiffness);
-        let (column, mover, text) = match storey.part {
-            Part::Computed => ("┆", String::new(), format!("computed, {own}")),
-            Part::Tested { scale, .. } => {
-                let (stands, axis) = tested.next().unwrap_or((true, 0));
-                let base = if stands { ", on the strong floor" } else { "" };
-                let on_the_rig = stiffness(scale.stiffness_on_the_rig(storey.stiffness));
-                let text = format!("tested{}{base}, {own}", at_scale(&scale));
-                let text = if on_the_rig == own {
-                    text
-                } else {
-                    format!("{text}; {on_the_rig} on the rig")
-                };
-                ("║", format!("◄─ axis {axis}"), text)
-            }
+    let storeys = drawn_storeys(frame).into_iter().map(|drawn| {
+        let (column, mover) = match drawn.axis {
+            None => ("┆", String::new()),
+            Some(axis) => ("║", format!("◄─ axis {axis}")),
         };
+        let (number, text) = (drawn.number, format!("{}, {}", drawn.part, drawn.stiffness));
         let joint = if number == frame.storeys.len() {
             '┬'
         } else {
@@ -52,40 +35,28 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
 
 /// A row for each element of a frame of matrices.
 fn elements(frame: &Frame) -> Vec<Vec<String>> {
-    let mut axes = 1..;
-    let elements = frame.elements.iter().zip(1..).map(|(element, number)| {
-        let stiffness = |value| stated(value, Dimension::STIFFNESS);
+    let elements = frame.elements.iter().zip(drawn_storeys(frame));
+    let row = |(element, drawn): (&Element, DrawnStorey)| {
         let end = |end: Option<usize>| end.map_or("ground".to_owned(), |end| (end + 1).to_string());
         let [from, to] = element.ends.map(end);
-        let own = stiffness(element.stiffness);
-        let (column, mover, text) = match element.part {
-            Part::Computed => ("┄┄", String::new(), format!("computed, {own}")),
-            Part::Tested { scale, .. } => {
-                let on_the_rig = stiffness(scale.stiffness_on_the_rig(element.stiffness));
-                let text = format!("tested{}, {own}", at_scale(&scale));
-                let text = if on_the_rig == own {
-                    text
-                } else {
-                    format!("{text}; {on_the_rig} on the rig")
-                };
-                let axis = axes.next().unwrap_or(0);
-                ("══", format!("◄─ axis {axis}"), text)
-            }
+        let (column, mover) = match drawn.axis {
+            None => ("┄┄", String::new()),
+            Some(axis) => ("══", format!("◄─ axis {axis}")),
         };
         vec![
-            format!("element {number}"),
+            format!("element {}", drawn.number),
             format!("{from} {column} {to}"),
             mover,
-            text,
+            format!("{}, {}", drawn.part, drawn.stiffness),
         ]
-    });
-    elements.collect()
+    };
+    elements.map(row).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use psd_plan::{Behaviour, Scale, Storey};
+    use psd_plan::{Behaviour, Part, Scale, Storey};
 
     #[test]
     fn storeys_of_one_assembly_stand_on_the_strong_floor_together() {

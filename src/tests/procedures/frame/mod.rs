@@ -2,9 +2,9 @@
 
 mod elements;
 pub(crate) mod escalate;
-mod gravity;
-mod hybrid;
-mod scaled;
+pub(crate) mod gravity;
+pub(crate) mod hybrid;
+pub(crate) mod scaled;
 mod unloading;
 
 use crate::procedures::unload::run::{of_frame, to_rest};
