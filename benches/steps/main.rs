@@ -139,6 +139,7 @@ fn linear<'a>() -> [Case<'a>; 2] {
                 gravity: None,
             };
             let input = SolverInput {
+                elements: None,
                 matrices: &matrices,
                 operator_stiffness: &stiffness,
                 integrator: Integrator::Tangent,
@@ -212,6 +213,7 @@ fn building<'a, S: RestoringForce + Copy + 'a>(
     });
     let zero = vec![0.0; storeys];
     let mut solver = FrameSolver::new(&FrameInput {
+        elements: None,
         matrices: &matrices,
         operator_stiffness: &matrices.stiffness,
         integrator: Integrator::Tangent,

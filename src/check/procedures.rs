@@ -5,6 +5,7 @@ use crate::procedures;
 use crate::procedures::facts::Tests;
 use psd_language::check::checker::Checker;
 use psd_language::check::rig::{CheckedRig, axes};
+use psd_language::codes::E671;
 use psd_plan::schema::Kind;
 use psd_plan::schema::procedures::SPECIMEN;
 use psd_plan::schema::rig::AXES;
@@ -130,26 +131,42 @@ impl Violation for OneDegreeOfFreedom<'_> {
 #[derive(Violation)]
 #[violation(
     E626,
-    "rig `{rig}` moves nothing: every storey of frame `{specimen}` is computed"
+    "rig `{rig}` moves nothing: every {word} of frame `{specimen}` is computed"
 )]
-#[help("write `part: tested` in a storey, or leave `--rig` out for a simulation")]
+#[help("write `part: tested` in {one}, or leave `--rig` out for a simulation")]
 struct NothingOnTheRig<'a> {
     rig: &'a str,
+    word: &'a str,
+    one: &'a str,
     specimen: &'a str,
-    #[label("no tested storey")]
+    #[label("no tested {word}")]
     declared: Span,
 }
 
 #[derive(Violation)]
 #[violation(
     W737,
-    "nothing is tested: every storey of frame `{specimen}` is computed"
+    "nothing is tested: every {word} of frame `{specimen}` is computed"
 )]
-#[help("write `part: tested` in the storey on the rig; without one, the run is a simulation")]
+#[help("write `part: tested` in the {word} on the rig; without one, the run is a simulation")]
 struct Simulation<'a> {
+    word: &'a str,
     specimen: &'a str,
     #[label("a simulation")]
     declared: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E671,
+    "`{keyword}` unloads storeys, but frame `{specimen}` has elements"
+)]
+#[help("use `shake` or `impact`: a second one begins where K and the elements balance")]
+struct UnloadsElements<'a> {
+    keyword: &'a str,
+    specimen: &'a str,
+    #[label("no storeys to unload")]
+    span: Span,
 }
 
 /// A frame whose storeys are all computed.
@@ -163,14 +180,23 @@ fn nothing_tested(
         return;
     };
     let declared = declared.1.block.head;
+    let frame = specimen.frame.as_ref();
+    let word = frame.map_or("storey", Frame::word_for_a_member);
     let real = rig.filter(|rig| rig.plan.link.as_real().is_some());
     match real {
         Some(rig) => checker.report(NothingOnTheRig {
             rig: &rig.plan.name,
+            word,
+            one: if word == "storey" {
+                "a storey"
+            } else {
+                "an element"
+            },
             specimen: &specimen.name,
             declared,
         }),
         None => checker.report(Simulation {
+            word,
             specimen: &specimen.name,
             declared,
         }),
@@ -192,6 +218,19 @@ pub fn check_axes(
         return;
     };
     axes::check_specimen(checker, rig, specimen);
+    let frame = specimen.frame.as_ref();
+    if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        for (block, procedure) in procedures {
+            let kind = procedure.as_ref().map(|procedure| &procedure.kind);
+            if let Some(kind) = kind.filter(|kind| procedures::facts_of(kind).unloads_storeys) {
+                checker.report(UnloadsElements {
+                    keyword: kind.keyword(),
+                    specimen: &specimen.name,
+                    span: checker.scope.blocks[*block].block.head,
+                });
+            }
+        }
+    }
     let storeys = specimen.degrees_of_freedom();
     let floors = specimen.frame.as_ref().map_or(1, Frame::degrees_of_freedom);
     if floors == 1 && storeys == 1 {

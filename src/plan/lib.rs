@@ -41,7 +41,7 @@ pub use psd_physics::specimen::{
     Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading,
 };
 pub use psd_physics::structure::beam::{Beam, Ends};
-pub use psd_physics::structure::frame::{Frame, Part, Scale, Storey};
+pub use psd_physics::structure::frame::{Element, Frame, Member, Part, Scale, Storey};
 pub use psd_physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };

@@ -6,19 +6,16 @@ use psd_physics::structure::substructures::Assemblies;
 use psd_text::units::Dimension;
 use psd_text::units::display::plain;
 
-/// `storey 1`, or `storeys 1, 2`, from indices.
+/// `storey 1`, or `storeys 1, 2`, from indices; `element 1` for an element of a frame of matrices.
 #[must_use]
-pub fn storeys(storeys: &[usize]) -> String {
+pub fn members(frame: &Frame, storeys: &[usize]) -> String {
     let numbers: Vec<String> = storeys
         .iter()
         .map(|storey| (storey + 1).to_string())
         .collect();
-    let word = if storeys.len() == 1 {
-        "storey"
-    } else {
-        "storeys"
-    };
-    format!("{word} {}", numbers.join(", "))
+    let word = frame.word_for_a_member();
+    let plural = if storeys.len() == 1 { "" } else { "s" };
+    format!("{word}{plural} {}", numbers.join(", "))
 }
 
 /// ` at scale 0.5, one of 2 equal parts`; empty if the specimen is the storey itself.
@@ -57,13 +54,18 @@ pub fn specimens_at_scale(frame: &Frame) -> Option<String> {
     (!specimens.is_empty()).then(|| specimens.join("; "))
 }
 
-/// The numbers of the rig beside those of the prototype: `storey 1 has 0.5 × drift, 0.125 × shear`. None if they are the same.
+/// The numbers of the rig beside those of the prototype: `storey 1: 0.5 × drift, 0.125 × shear`. None if they are the same.
 #[must_use]
 pub fn numbers_on_the_rig(frame: &Frame) -> Option<String> {
     let number = |value: f64| plain(value, Dimension::NUMBER, 4);
     let specimen = |(of, scale): (String, Scale)| {
         let (drift, shear) = (number(scale.displacement), number(1.0 / scale.forces()));
-        format!("{of}: {drift} × drift, {shear} × shear")
+        let [of_drift, of_shear] = if frame.elements.is_empty() {
+            ["drift", "shear"]
+        } else {
+            ["deformation", "force"]
+        };
+        format!("{of}: {drift} × {of_drift}, {shear} × {of_shear}")
     };
     let specimens: Vec<String> = scaled(frame).into_iter().map(specimen).collect();
     (!specimens.is_empty()).then(|| specimens.join("; "))
@@ -73,9 +75,10 @@ pub fn numbers_on_the_rig(frame: &Frame) -> Option<String> {
 fn scaled(frame: &Frame) -> Vec<(String, Scale)> {
     let assemblies = Assemblies::of(frame);
     let specimens = assemblies.map_or_else(Vec::new, |assemblies| assemblies.specimens());
+    let scales: Vec<Scale> = frame.members().map(|member| member.part.scale()).collect();
     let specimens = specimens
         .into_iter()
-        .map(|of| (storeys(&of), frame.storeys[of[0]].part.scale()));
+        .map(|of| (members(frame, &of), scales[of[0]]));
     specimens
         .filter(|(_, scale)| *scale != Scale::FULL)
         .collect()

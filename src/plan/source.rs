@@ -35,6 +35,11 @@ pub enum Source {
         specimen: usize,
         storey: usize,
     },
+    /// The stiffness of one element of a frame of matrices, as stated in the plan.
+    ElementStiffness {
+        specimen: usize,
+        element: usize,
+    },
     /// The scale factor of the mass matrix of a frame, as a whole.
     MassMatrix(usize),
     /// The scale factor of the stiffness matrix of a frame, as a whole.

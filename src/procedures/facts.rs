@@ -30,6 +30,8 @@ pub(crate) struct Facts<'a> {
     pub dependence: Dependence,
     /// Whether it leaves the specimen without load.
     pub unloads: bool,
+    /// Whether it moves the storeys of a frame to zero shear, at its end or in between.
+    pub unloads_storeys: bool,
     /// Its figures, in the order of a report.
     pub figures: &'static [FigureKind],
     /// Those that several procedures of its kind can share, one curve of each.

@@ -14,6 +14,8 @@ pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
 
+use std::iter::once;
+
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
@@ -361,12 +363,23 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
 pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Table<'a>> {
     let name = procedure.name.clone();
     let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
-    let scaled = assemblies.filter(Assemblies::is_scaled);
+    let scaled = assemblies.clone().filter(Assemblies::is_scaled);
     match &procedure.history {
         History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
         History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
-        History::Impact(history) => vec![impact::tables::table(name, history, scaled)],
-        History::Shake(history) => vec![shake::tables::table(name, history, scaled)],
+        History::Impact(history) => {
+            let of_elements = impact::tables::of_elements(&name, history, assemblies);
+            once(impact::tables::table(name, history, scaled))
+                .chain(of_elements)
+                .collect()
+        }
+        History::Shake(history) => {
+            let number = |step: usize| history.steps[step].step;
+            let of_elements = shake::tables::of_elements(&name, &history.steps, number, assemblies);
+            once(shake::tables::table(name, history, scaled))
+                .chain(of_elements)
+                .collect()
+        }
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => escalate::tables::tables(name, history, scaled.as_ref()),
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
@@ -388,7 +401,10 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
-        ProcedureBlock::Shake => shake::tables::columns(shake::tables::shake()),
+        ProcedureBlock::Shake => {
+            let of_floors = shake::tables::columns(shake::tables::shake());
+            [of_floors, numeric(&shake::tables::elements())].concat()
+        }
         ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Inspect => Vec::new(),
     };
@@ -466,12 +482,11 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
             }
         }
         History::Shake(shake) => {
-            let steps = shake.steps.iter();
-            steps.for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force));
+            common::reached::of_floors(shake.steps.iter().map(|step| &step.floors), give);
         }
         History::Unload(steps) | History::FrameUnload(steps) => {
             let steps = steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+            steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
         }
         History::Inspect => {}
     }

@@ -47,6 +47,7 @@ fn an_explicit_newmark_of_the_client_is_that_of_psd() {
     };
     let zero = [0.0; 2];
     let mut own = FrameSolver::new(&FrameInput {
+        elements: None,
         matrices: &matrices,
         operator_stiffness: &matrices.stiffness,
         integrator: Integrator::Explicit,

@@ -1,12 +1,15 @@
 //! The seam between the floors of a frame and the axes of the rig. The rig may carry a part of the frame; the models of the other storeys
 //! are computed here. In: targets of all floors. Out: displacement and restoring force of all floors. Integrators and procedures see
 //! floors in numbers of the prototype; guard, rig and run log see the axes in numbers of the rig. If the rig carries the whole frame at
-//! full scale, or one degree of freedom, the axes are the floors.
+//! full scale, or one degree of freedom, the axes are the floors. In a frame of matrices with elements, the floors are its degrees of
+//! freedom, and each tested element has an axis.
 
+use super::hybrid::Hybrid;
 use super::session::Session;
 use super::stop::Stop;
 use super::{AxisReport, StepReport};
 use psd_physics::statistics::DeclaredNoise;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
 use psd_rig::{Reading, RigFault, UnfinishedStep};
 
@@ -65,11 +68,16 @@ impl Session<'_> {
         let Some(hybrid) = &mut self.hybrid else {
             return Ok((commanded, reading));
         };
-        hybrid.substructures.rest();
+        hybrid.substructures.rest(&commanded);
         hybrid.at_start = hybrid.substructures.clone();
         hybrid.axes = reading;
         hybrid.commanded = hybrid.floors_at(&commanded).displacement;
         Ok((hybrid.commanded.clone(), hybrid.floors()))
+    }
+
+    /// The last reading of the elements of a frame of matrices, in numbers of the prototype; none for any other specimen.
+    pub(crate) fn elements_read(&self) -> Vec<ElementReading> {
+        self.hybrid.as_ref().map_or_else(Vec::new, Hybrid::elements)
     }
 
     /// Targets of the axes \[m\], or their velocities \[m/s\], from those of the floors.

@@ -1,6 +1,7 @@
 //! The substructures of a run: the part of a frame that the rig carries, and the models of the other storeys. In: a plan, readings of the
 //! axes. Out: displacements and restoring forces of the floors. It knows no rig and no procedure.
 
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::Substructures;
 use psd_plan::Plan;
 use psd_rig::Reading;
@@ -36,6 +37,15 @@ impl Hybrid {
     /// The floors at the last reading of the axes.
     pub fn floors(&self) -> Reading {
         self.floors_at(&self.axes.displacement)
+    }
+
+    /// The elements of a frame of matrices at the last reading of the axes.
+    pub fn elements(&self) -> Vec<ElementReading> {
+        let axes = (
+            self.axes.displacement.as_slice(),
+            self.axes.force.as_slice(),
+        );
+        self.substructures.elements_read(axes)
     }
 
     /// The same with the axes at other displacements \[m\].

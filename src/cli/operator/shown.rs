@@ -11,6 +11,8 @@ use psd_plan::Plan;
 pub struct Shown {
     /// The number of the last axis and of its storey, if the rig has several axes and does not carry the whole frame.
     pub last_axis: Option<(usize, usize)>,
+    /// Whether the axis moves an element and not a storey.
+    pub is_element: bool,
     /// What follows displacements and forces: ` on the rig` if those of the prototype are others.
     pub of_rig: &'static str,
 }
@@ -25,7 +27,9 @@ pub struct Names {
 
 impl Shown {
     pub fn of(plan: &Plan) -> Self {
-        let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
+        let frame = plan.frame_on_the_rig();
+        let is_element = frame.is_some_and(|frame| !frame.elements.is_empty());
+        let assemblies = frame.and_then(Assemblies::of);
         let last_axis = assemblies.filter(|assemblies| !assemblies.is_whole_frame());
         let last_axis = last_axis.and_then(|assemblies| {
             let last = assemblies.tested().enumerate().last();
@@ -33,6 +37,7 @@ impl Shown {
         });
         Self {
             last_axis: last_axis.filter(|(axis, _)| *axis > 1),
+            is_element,
             of_rig: match plan.specimens_at_scale() {
                 Some(_) => " on the rig",
                 None => "",
@@ -44,7 +49,10 @@ impl Shown {
     pub fn names(&self, axes: usize) -> Names {
         let [displacement, force, across] = match self.last_axis {
             Some((axis, storey)) => [
-                format!("axis {axis} (storey {storey})"),
+                format!(
+                    "axis {axis} ({} {storey})",
+                    if self.is_element { "element" } else { "storey" }
+                ),
                 format!("force of axis {axis}"),
                 format!("axis {axis}"),
             ],

@@ -131,13 +131,7 @@ mod tests {
                 },
             ),
         ] {
-            let frame = Frame {
-                storeys: Vec::new(),
-                mass: vec![vec![mass]],
-                stiffness: vec![vec![stiffness]],
-                files: None,
-                matrix_uncertainty: [0.0; 2],
-            };
+            let frame = Frame::of_matrices(vec![vec![mass]], vec![vec![stiffness]]);
             let properties = FrameProperties::of(&frame, &Damping::None).unwrap();
             let of_frame = properties.critical_on_impact(0, &approach);
             let found = approach.critical_time_step(mass, stiffness);

@@ -140,6 +140,7 @@ impl End {
             force_at_computed: motion.force,
             load: 0.0,
             storey_stiffness: stiffness,
+            elements: Vec::new(),
             energies: FrameEnergies {
                 kinetic,
                 restoring: work.restoring,

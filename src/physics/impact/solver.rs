@@ -16,6 +16,7 @@ use crate::integrator::step_form::{StepContact, StepForm};
 use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
 use crate::structure::drifts_to;
+use crate::structure::elements::ElementReading;
 use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
 use crate::structure::substructures::StoreyReadings;
@@ -130,6 +131,7 @@ impl ImpactSolver {
             initial_restoring_force,
             initial_load: 0.0,
             readings: &[StoreyReadings::of_one(input.noise)],
+            elements: None,
         };
         Self::on(&structure, &input.setup())
     }
@@ -216,6 +218,11 @@ impl<V: HasTangents> ImpactSolver<V> {
             first_input,
             striker_stopped: false,
         })
+    }
+
+    /// The elements of a frame of matrices at the targets of the step in progress, before it is completed.
+    pub fn read_elements(&mut self, elements: &[ElementReading]) {
+        self.structure.read_elements(elements);
     }
 
     /// Before the first step: where the structure was measured \[m\].
@@ -547,6 +554,9 @@ fn of_impulse(end: StrikerEnd, decided: Decided, touching: bool) -> Advance {
 /// K_t of the struck degree of freedom \[N/m\].
 #[inline]
 fn stiffness_at<V: HasTangents>(structure: &Solver<V>, struck: usize) -> f64 {
+    if !structure.state().elements.is_empty() {
+        return structure.form.operator().at(struck, struck);
+    }
     let followed = structure.state().storey_stiffness.as_slice();
     followed
         .get(struck)

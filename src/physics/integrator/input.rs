@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::Integrator;
 use super::tangents::Tangents;
+use crate::structure::elements::{ElementReading, Elements};
 use crate::structure::matrix::{Matrix as _, Vector};
 use crate::structure::substructures::StoreyReadings;
 use crate::structure::{Matrices, NotPositiveDefinite};
@@ -26,8 +27,10 @@ pub struct SolverInput<'a, V: Vector> {
     pub initial_restoring_force: V::View<'a>,
     /// F(0) \[N\]
     pub initial_load: V::View<'a>,
-    /// The readings of each storey; empty for exact ones.
+    /// The readings of each storey or element; empty for exact ones.
     pub readings: &'a [StoreyReadings],
+    /// The elements of a frame of matrices, and their first reading.
+    pub elements: Option<(&'a Elements, &'a [ElementReading])>,
 }
 
 /// The input of a frame.

@@ -6,6 +6,7 @@ use super::state::State;
 use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangents::{FollowedTangents as _, HasTangents, Tangents};
 use crate::integrator::Integrator;
+use crate::structure::elements::{ElementReading, Elements};
 use crate::structure::energies::{Ends, FrameEnergies};
 use crate::structure::matrix::{Factor as _, Matrix, Vector};
 
@@ -15,6 +16,8 @@ pub struct Solver<V: HasTangents> {
     pub(crate) form: StepForm<V>,
     tangents: Option<V::Tangents>,
     modification: Option<V::Matrix>,
+    /// Of a frame of matrices; None without elements.
+    elements: Option<Elements>,
     /// R − G X at the computed displacement \[N\]; None without weights.
     net: Option<V>,
     state: State<V>,
@@ -56,13 +59,22 @@ impl<V: HasTangents> Solver<V> {
         let tangent_form = input.integrator == Integrator::Tangent;
         let tangents = match input.tangents {
             Tangents::Storeys { largest_ratio } => {
-                let followed = V::Tangents::new(
-                    &matrices.stiffness,
-                    largest_ratio,
-                    input.readings,
-                    &displacement,
-                    &force,
-                );
+                let followed = match input.elements {
+                    Some((elements, read)) => V::Tangents::of_elements(
+                        elements,
+                        largest_ratio,
+                        input.readings,
+                        &displacement,
+                        read,
+                    ),
+                    None => V::Tangents::new(
+                        &matrices.stiffness,
+                        largest_ratio,
+                        input.readings,
+                        &displacement,
+                        &force,
+                    ),
+                };
                 Some(followed.ok_or(FrameError::NoStoreys)?)
             }
             Tangents::Initial => None,
@@ -94,6 +106,7 @@ impl<V: HasTangents> Solver<V> {
             modification: input
                 .i_modification
                 .then(|| input.operator_stiffness.clone()),
+            elements: input.elements.map(|(elements, _)| elements.clone()),
             state: State {
                 step: 0,
                 time: 0.0,
@@ -110,6 +123,9 @@ impl<V: HasTangents> Solver<V> {
                     .as_ref()
                     .map(|followed| followed.stiffness().clone())
                     .unwrap_or_default(),
+                elements: input
+                    .elements
+                    .map_or_else(Vec::new, |(_, read)| read.to_vec()),
                 energies: FrameEnergies::default(),
             },
             tangents,
@@ -126,6 +142,12 @@ impl<V: HasTangents> Solver<V> {
     /// Measured displacement before the first step \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.state.measured_displacement.set(measured_displacement);
+    }
+
+    /// The elements of a frame of matrices at the targets of the step in progress, before it is completed.
+    pub fn read_elements(&mut self, elements: &[ElementReading]) {
+        self.state.elements.clear();
+        self.state.elements.extend_from_slice(elements);
     }
 
     /// G X at these displacements \[m\], in \[N\]; empty without weights.
@@ -247,6 +269,7 @@ impl<V: HasTangents> Solver<V> {
             form,
             tangents,
             modification,
+            elements,
             net,
             state,
             next,
@@ -268,6 +291,9 @@ impl<V: HasTangents> Solver<V> {
                     tracking_error,
                     effective_force,
                 );
+                if let Some(elements) = elements {
+                    elements.correct(&state.elements, effective_force.as_mut_slice());
+                }
                 &*effective_force
             }
             None => &state.restoring_force,
@@ -304,7 +330,11 @@ impl<V: HasTangents> Solver<V> {
             }
         }
         if let Some(tangents) = tangents
-            && tangents.take(&state.measured_displacement, &state.restoring_force)
+            && tangents.take(
+                &state.measured_displacement,
+                &state.restoring_force,
+                &state.elements,
+            )
         {
             if form.integrator == Integrator::Tangent {
                 V::follow(form, tangents);
@@ -342,6 +372,9 @@ impl<V: HasTangents> Solver<V> {
             &mut tracking_error,
             &mut effective_force,
         );
+        if let Some(elements) = &self.elements {
+            elements.correct(&self.state.elements, effective_force.as_mut_slice());
+        }
         effective_force
     }
 
@@ -440,6 +473,7 @@ mod tests {
             initial_restoring_force: STIFFNESS,
             initial_load: 0.0,
             readings: &[],
+            elements: None,
         };
         let mut solver = Solver::<f64>::new(&input).expect("a mass on a spring");
         for _ in 0..steps {

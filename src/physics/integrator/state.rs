@@ -2,6 +2,7 @@
 
 use super::step_form::Moment;
 use crate::structure::FrameEnergies;
+use crate::structure::elements::ElementReading;
 use crate::structure::matrix::Vector;
 
 /// The end of a step; step 0 is the start.
@@ -30,6 +31,8 @@ pub struct State<V> {
     pub load: V,
     /// `k_t` of each storey for the next step \[N/m\]; empty for a frame without storey tangents.
     pub storey_stiffness: V,
+    /// The elements of a frame of matrices at the target; empty for any other structure.
+    pub elements: Vec<ElementReading>,
     pub energies: FrameEnergies,
 }
 

@@ -1,11 +1,13 @@
 //! The tangent stiffness of a structure, storey by storey (Melo et al. 2006, eq. 6): the secant of its shear over its storey drift; one
-//! degree of freedom is one storey. In: the readings of the actuators. Out: storey stiffnesses, and whether one changed.
+//! degree of freedom is one storey. An element of a frame of matrices has the secant of its force over its deformation. In: the readings
+//! of the actuators. Out: storey stiffnesses, and whether one changed.
 
 use std::fmt::Debug;
 
 use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangent::{Following, TangentStiffness};
 use crate::statistics::DeclaredNoise;
+use crate::structure::elements::{ElementReading, Elements};
 use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 use crate::structure::matrix::{Matrix, Vector};
 use crate::structure::substructures::StoreyReadings;
@@ -16,7 +18,7 @@ use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 pub enum Tangents {
     /// K0 throughout: for a frame without storeys in its matrix.
     Initial,
-    /// Each storey's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building.
+    /// Each storey's or element's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building, or has elements.
     Storeys { largest_ratio: f64 },
 }
 
@@ -38,6 +40,15 @@ pub trait FollowedTangents: Clone + Debug {
         force: &Self::Vector,
     ) -> Option<Self>;
 
+    /// The same for the elements of a frame of matrices.
+    fn of_elements(
+        elements: &Elements,
+        largest_ratio: f64,
+        readings: &[StoreyReadings],
+        displacement: &Self::Vector,
+        read: &[ElementReading],
+    ) -> Option<Self>;
+
     /// From the ground up \[N/m\].
     fn stiffness(&self) -> &Self::Vector;
 
@@ -46,7 +57,12 @@ pub trait FollowedTangents: Clone + Debug {
 
     /// Adds the readings at the end of a step. True if the stiffness of a storey changed by more than rounding: only then is a new
     /// factorisation necessary.
-    fn take(&mut self, displacement: &Self::Vector, force: &Self::Vector) -> bool;
+    fn take(
+        &mut self,
+        displacement: &Self::Vector,
+        force: &Self::Vector,
+        elements: &[ElementReading],
+    ) -> bool;
 }
 
 /// A vector of a structure whose tangent stiffness can be followed.
@@ -217,11 +233,13 @@ pub struct StoreyTangent {
     stiffness: f64,
 }
 
-/// The tangents of storeys.
+/// The tangents of storeys, or of the elements of a frame of matrices.
 #[derive(Clone, Debug)]
 pub struct StoreyTangents {
     /// That of the only storey.
     only: Option<StoreyTangent>,
+    /// None for storeys.
+    elements: Option<Elements>,
     storeys: Vec<Storey>,
     /// \[N/m\]
     stiffnesses: Vec<f64>,
@@ -299,6 +317,28 @@ fn each_reading(displacement: &[f64], force: &[f64], mut take: impl FnMut(usize,
     }
 }
 
+/// The same with the reading of each element, between floors at these displacements \[m\].
+fn each_element(
+    elements: &Elements,
+    displacement: &[f64],
+    read: &[ElementReading],
+    mut take: impl FnMut(usize, Reading),
+) {
+    for (element, (ends, read)) in elements.ends.iter().zip(read).enumerate() {
+        let ends = ends.iter().flatten();
+        let size: f64 = ends.map(|end| displacement[*end].abs()).sum();
+        take(
+            element,
+            Reading {
+                drift: read.deformation,
+                shear: read.force,
+                drift_rounding: f64::EPSILON * size,
+                shear_rounding: f64::EPSILON * read.force.abs(),
+            },
+        );
+    }
+}
+
 /// The parameters of the tangent of one storey.
 fn following(largest_ratio: f64, readings: Option<&StoreyReadings>) -> Following {
     let noise = readings.map_or(DeclaredNoise::NONE, |readings| DeclaredNoise {
@@ -337,6 +377,16 @@ impl FollowedTangents for StoreyTangent {
         })
     }
 
+    fn of_elements(
+        _: &Elements,
+        _: f64,
+        _: &[StoreyReadings],
+        _: &f64,
+        _: &[ElementReading],
+    ) -> Option<Self> {
+        None
+    }
+
     #[inline]
     fn stiffness(&self) -> &f64 {
         &self.stiffness
@@ -348,7 +398,7 @@ impl FollowedTangents for StoreyTangent {
     }
 
     #[inline]
-    fn take(&mut self, displacement: &f64, force: &f64) -> bool {
+    fn take(&mut self, displacement: &f64, force: &f64, _: &[ElementReading]) -> bool {
         let [change, rise] = [displacement - self.last[0], force - self.last[1]];
         self.last = [*displacement, *force];
         self.secant = match &mut self.noisy {
@@ -385,8 +435,29 @@ impl FollowedTangents for StoreyTangents {
         };
         Some(Self {
             only,
+            elements: None,
             storeys,
             stiffnesses,
+        })
+    }
+
+    fn of_elements(
+        elements: &Elements,
+        largest_ratio: f64,
+        readings: &[StoreyReadings],
+        displacement: &Vec<f64>,
+        read: &[ElementReading],
+    ) -> Option<Self> {
+        let mut followed = Vec::with_capacity(read.len());
+        each_element(elements, displacement, read, |element, first| {
+            let following = following(largest_ratio, readings.get(element));
+            followed.push(Storey::new(elements.stiffness[element], following, first));
+        });
+        Some(Self {
+            only: None,
+            elements: Some(elements.clone()),
+            storeys: followed,
+            stiffnesses: elements.stiffness.clone(),
         })
     }
 
@@ -395,18 +466,28 @@ impl FollowedTangents for StoreyTangents {
     }
 
     fn compose(&self, operator: &mut SymmetricBand) {
-        set_storeys(&self.stiffnesses, operator);
+        match &self.elements {
+            Some(elements) => elements.compose(&self.stiffnesses, operator),
+            None => set_storeys(&self.stiffnesses, operator),
+        }
     }
 
-    fn take(&mut self, displacement: &Vec<f64>, force: &Vec<f64>) -> bool {
+    fn take(&mut self, displacement: &Vec<f64>, force: &Vec<f64>, read: &[ElementReading]) -> bool {
         let mut changed = false;
         let Self {
             only,
+            elements,
             storeys,
             stiffnesses,
         } = self;
+        if let Some(elements) = elements {
+            each_element(elements, displacement, read, |element, now| {
+                changed |= storeys[element].take(now, &mut stiffnesses[element]);
+            });
+            return changed;
+        }
         if let Some(only) = only {
-            changed = only.take(&displacement[0], &force[0]);
+            changed = only.take(&displacement[0], &force[0], &[]);
             stiffnesses[0] = only.stiffness;
             return changed;
         }
@@ -468,7 +549,7 @@ mod tests {
             ];
             let (displacement, force) = read(&INITIAL, &drift);
             assert!(
-                !tangents.take(&displacement, &force),
+                !tangents.take(&displacement, &force, &[]),
                 "step {step}: {:?}",
                 tangents.stiffness()
             );
@@ -481,7 +562,7 @@ mod tests {
     fn each_storey_is_followed_by_its_own_drift() {
         let mut tangents = at_rest(0.0, 0.0);
         let (displacement, force) = read(&[3000.0, 500.0, 9000.0], &[1e-3, -2e-3, 3e-3]);
-        assert!(tangents.take(&displacement, &force));
+        assert!(tangents.take(&displacement, &force, &[]));
         let found = tangents.stiffness();
         assert_eq!((found[0], found[2]), (3000.0, 2000.0));
         assert!((found[1] - 500.0).abs() < 1e-9);
@@ -493,14 +574,14 @@ mod tests {
         let indefinite = |drift: [f64; 3], storey: usize| {
             let mut tangents = at_rest(1.0, 0.0);
             let (displacement, force) = read(&[300.0, 200.0, 100.0], &drift);
-            tangents.take(&displacement, &force);
+            tangents.take(&displacement, &force, &[]);
             tangents.stiffness()[storey] != INITIAL[storey]
         };
         assert!(!indefinite([0.0057, 0.0, 0.0], 0) && indefinite([0.0059, 0.0, 0.0], 0));
         assert!(!indefinite([0.0, 0.0, 0.0099], 2) && indefinite([0.0, 0.0, 0.0101], 2));
         let mut coarse = at_rest(0.0, 1e-3);
         let (displacement, force) = read(&[300.0, 200.0, 100.0], &[1.5e-3, 1.5e-3, 2.5e-3]);
-        coarse.take(&displacement, &force);
+        coarse.take(&displacement, &force, &[]);
         assert_eq!(
             coarse.stiffness()[1],
             INITIAL[1],

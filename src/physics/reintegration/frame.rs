@@ -17,6 +17,7 @@ use crate::integrator::solver::FrameSolver;
 use crate::integrator::state::FrameState;
 use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
+use crate::structure::elements::Elements;
 use crate::structure::substructures::StoreyReadings;
 use crate::structure::{FrameMatrices, SymmetricBand, drifts, shears, widen};
 
@@ -33,7 +34,10 @@ pub struct FrameRun {
     pub time_step: f64,
     /// Largest number of steps.
     pub steps: u64,
-    /// The factor on the stiffness of every storey that is computed; empty for 1.
+    /// The elements of a frame of matrices.
+    pub elements: Option<Elements>,
+    /// The factor on the stiffness of every storey that is computed, and at last that on the stiffness of the files beside elements; empty
+    /// for 1.
     pub computed_factors: Vec<f64>,
     /// Of each storey, as the run used them.
     pub readings: Vec<StoreyReadings>,
@@ -122,6 +126,10 @@ impl FrameRun {
             initial_restoring_force: retrace.force(),
             initial_load: load,
             readings: &self.readings,
+            elements: self
+                .elements
+                .as_ref()
+                .map(|elements| (elements, retrace.elements())),
         }
     }
 
@@ -155,6 +163,7 @@ impl FrameRun {
             if retrace.departed() {
                 peaks.departs();
             }
+            solver.read_elements(retrace.elements());
             peaks.take(
                 solver.complete(retrace.displacement(), retrace.force()),
                 1.0,
@@ -212,6 +221,7 @@ impl FrameRun {
                 solver.predicted_velocity(to);
             });
             retrace.move_to(solver.predict(), velocities);
+            solver.read_elements(retrace.elements());
             departed.set(retrace.departed());
             [retrace.displacement().to_vec(), retrace.force().to_vec()]
         };

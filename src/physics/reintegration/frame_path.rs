@@ -13,6 +13,7 @@
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::statistics::DeclaredNoise;
+use crate::structure::elements::ElementReading;
 use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures, assembly_drifts};
 use crate::structure::{SymmetricBand, storeys_of};
 
@@ -25,6 +26,8 @@ pub struct FrameReading {
     pub displacement: Vec<f64>,
     /// \[N\]
     pub force: Vec<f64>,
+    /// Those of a frame of matrices, in numbers of the prototype.
+    pub elements: Vec<ElementReading>,
 }
 
 /// Readings of all axes along the path.
@@ -47,7 +50,7 @@ pub struct FramePath {
 
 #[derive(Clone, Debug)]
 enum Bends {
-    /// From the ground up: shear over storey drift.
+    /// From the ground up: shear over storey drift; of a tested element, force over deformation.
     Storeys(Vec<RecordedPath>),
     /// Initial K \[N/m\]; lag of each floor behind its target \[s\].
     Together(SymmetricBand, Vec<f64>),
@@ -76,10 +79,15 @@ impl FramePath {
         } = motion;
         let (mut readings, mut floors) = (readings, Vec::new());
         if let Some(assemblies) = assemblies {
-            let at_axes = |floors: &FrameReading| FrameReading {
-                target: assemblies.axes_of(&floors.target),
-                displacement: assemblies.axes_of(&floors.displacement),
-                force: assemblies.forces_of(&floors.force),
+            let at_axes = |floors: &FrameReading| {
+                let read = [floors.displacement.as_slice(), &floors.force];
+                let [displacement, force] = assemblies.axes_read(read, &floors.elements);
+                FrameReading {
+                    target: assemblies.axes_of(&floors.target),
+                    displacement,
+                    force,
+                    elements: Vec::new(),
+                }
             };
             floors = readings;
             readings = floors.iter().map(at_axes).collect();
@@ -94,7 +102,12 @@ impl FramePath {
                 .map(|reading| to_storeys(read(reading), &stands))
                 .collect::<Vec<Vec<f64>>>()
         };
-        let bends = match storeys_of(stiffness) {
+        let elements = assemblies.and_then(Assemblies::elements);
+        let members = match elements {
+            Some(elements) => Some(elements.stiffness.clone()),
+            None => storeys_of(stiffness),
+        };
+        let bends = match members {
             None => {
                 let of_axis = |axis: usize| {
                     let passed = readings.iter().zip(&velocities);
@@ -218,6 +231,7 @@ impl FramePath {
                 is_as_recorded: factors.iter().all(|factor| *factor == 1.0),
                 displacement: Vec::new(),
                 force: Vec::new(),
+                elements: Vec::new(),
             }),
         };
         retrace.read();
@@ -262,6 +276,7 @@ struct Floors {
     is_as_recorded: bool,
     displacement: Vec<f64>,
     force: Vec<f64>,
+    elements: Vec<ElementReading>,
 }
 
 /// The path during a re-run.
@@ -309,6 +324,12 @@ impl FrameRetrace<'_> {
             .map_or(&self.force, |floors| &floors.force)
     }
 
+    /// The last reading of the elements of a frame of matrices.
+    #[must_use]
+    pub fn elements(&self) -> &[ElementReading] {
+        self.floors.as_ref().map_or(&[], |floors| &floors.elements)
+    }
+
     /// Whether a storey has departed from the record.
     #[must_use]
     pub fn departed(&self) -> bool {
@@ -344,11 +365,13 @@ impl FrameRetrace<'_> {
         {
             floors.displacement.clone_from(&recorded.displacement);
             floors.force.clone_from(&recorded.force);
+            floors.elements.clone_from(&recorded.elements);
             return;
         }
         let axes = (self.displacement.as_slice(), self.force.as_slice());
         let substructures = &floors.substructures;
         substructures.floors(axes, &mut floors.displacement, &mut floors.force);
+        floors.elements = substructures.elements_read(axes);
     }
 
     fn move_axes(&mut self, targets: &[f64], velocities: &[f64]) {
@@ -438,6 +461,7 @@ mod tests {
             target: target.to_vec(),
             displacement: target.iter().map(|position| position + 1e-5).collect(),
             force,
+            elements: Vec::new(),
         }
     }
 

@@ -99,6 +99,7 @@ fn at_rest<'a>(
         initial_restoring_force: zero,
         initial_load: load,
         readings: &[],
+        elements: None,
     }
 }
 

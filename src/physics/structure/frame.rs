@@ -1,7 +1,9 @@
 //! Frames of storeys: many degrees of freedom, one for each floor, counted from the ground up. A frame has a matrix of mass and one of
-//! stiffness. It computes no motion.
+//! stiffness. A frame that is given by its matrices can have elements beside them. It computes no motion.
 
-use super::shear_building::shears;
+use super::elements::{ElementEnds, Elements, add_springs};
+use super::shear_building::{shears, storey_stiffness};
+use super::{RowsError, SymmetricBand};
 use crate::specimen::Behaviour;
 use crate::statistics::DeclaredNoise;
 
@@ -10,6 +12,10 @@ use crate::statistics::DeclaredNoise;
 pub struct Frame {
     /// From the ground up; empty if the plan gives the matrices.
     pub storeys: Vec<Storey>,
+    /// Beside the matrices. With them the stiffness of the files is computed; without any, the rig carries the whole frame.
+    pub elements: Vec<Element>,
+    /// The stiffness of the files, N/m, row by row: symmetric; empty without elements.
+    pub computed_stiffness: Vec<Vec<f64>>,
     /// M, kg, row by row: symmetric, positive definite.
     pub mass: Vec<Vec<f64>>,
     /// K at no displacement, N/m, row by row: symmetric, positive definite.
@@ -40,6 +46,38 @@ pub struct Storey {
     /// Damping on the load cells of a simulated rig, per drift velocity there \[N·s/m\].
     pub damping: f64,
     /// The same, N: friction against the drift.
+    pub coulomb: f64,
+    pub part: Part,
+}
+
+/// A restoring force between two degrees of freedom of a frame of matrices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    pub ends: ElementEnds,
+    /// \[N/m\]
+    pub stiffness: f64,
+    /// Standard uncertainty \[N/m\]; 0 if none is stated.
+    pub stiffness_uncertainty: f64,
+    /// Restoring-force model: force against elongation, on the rig if it is tested.
+    pub behaviour: Behaviour,
+    /// Damping on the load cell of a simulated rig \[N·s/m\].
+    pub damping: f64,
+    /// The same, N: friction against the motion.
+    pub coulomb: f64,
+    pub part: Part,
+}
+
+/// A storey or an element: a restoring force between two degrees of freedom, against the difference of their displacements.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<'a> {
+    pub ends: ElementEnds,
+    /// \[N/m\]
+    pub stiffness: f64,
+    /// On the rig if it is tested.
+    pub behaviour: &'a Behaviour,
+    /// \[N·s/m\]
+    pub damping: f64,
+    /// \[N\]
     pub coulomb: f64,
     pub part: Part,
 }
@@ -151,7 +189,9 @@ impl Storey {
             part: Part::TESTED,
         }
     }
+}
 
+impl Member<'_> {
     /// Largest tangent of its model \[N/m\], in numbers of the prototype; None if no bound is known.
     #[must_use]
     pub fn largest_stiffness(&self) -> Option<f64> {
@@ -205,11 +245,99 @@ impl Frame {
         }
         Self {
             storeys,
+            elements: Vec::new(),
+            computed_stiffness: Vec::new(),
             mass,
             stiffness,
             files: None,
             matrix_uncertainty: [0.0; 2],
         }
+    }
+
+    /// A frame of M and K without files.
+    #[must_use]
+    pub const fn of_matrices(mass: Vec<Vec<f64>>, stiffness: Vec<Vec<f64>>) -> Self {
+        Self {
+            storeys: Vec::new(),
+            elements: Vec::new(),
+            computed_stiffness: Vec::new(),
+            mass,
+            stiffness,
+            files: None,
+            matrix_uncertainty: [0.0; 2],
+        }
+    }
+
+    /// The same frame of matrices with these elements beside its stiffness, which is then computed.
+    #[must_use]
+    pub fn with_elements(mut self, elements: Vec<Element>) -> Self {
+        if !self.elements.is_empty() {
+            self.stiffness = std::mem::take(&mut self.computed_stiffness);
+        }
+        if !elements.is_empty() {
+            self.computed_stiffness.clone_from(&self.stiffness);
+            let springs = elements
+                .iter()
+                .map(|element| (element.ends, element.stiffness));
+            let stiffness = &mut self.stiffness;
+            add_springs(springs, |row, column, more| stiffness[row][column] += more);
+        }
+        self.elements = elements;
+        self
+    }
+
+    /// Its storeys or elements; none for a frame that is on the rig as a whole, by its matrices.
+    pub fn members(&self) -> impl Iterator<Item = Member<'_>> {
+        let storeys = self.storeys.iter().enumerate();
+        let storeys = storeys.map(|(floor, storey)| Member {
+            ends: [floor.checked_sub(1), Some(floor)],
+            stiffness: storey.stiffness,
+            behaviour: &storey.behaviour,
+            damping: storey.damping,
+            coulomb: storey.coulomb,
+            part: storey.part,
+        });
+        storeys.chain(self.elements.iter().map(|element| Member {
+            ends: element.ends,
+            stiffness: element.stiffness,
+            behaviour: &element.behaviour,
+            damping: element.damping,
+            coulomb: element.coulomb,
+            part: element.part,
+        }))
+    }
+
+    /// The layout of its elements; None without any.
+    ///
+    /// # Errors
+    /// The stiffness of the files is not square or not symmetric.
+    pub fn elements(&self) -> Result<Option<Elements>, RowsError> {
+        if self.elements.is_empty() {
+            return Ok(None);
+        }
+        let members = || self.members();
+        Ok(Some(Elements {
+            ends: members().map(|member| member.ends).collect(),
+            stiffness: members().map(|member| member.stiffness).collect(),
+            operator_stiffness: members()
+                .map(|member| member.operator_stiffness())
+                .collect(),
+            matrix: SymmetricBand::from_dense(&self.computed_stiffness)?,
+        }))
+    }
+
+    /// The stiffness of the frame with these stiffnesses of its members \[N/m\], beside the one that is computed from the files.
+    ///
+    /// # Errors
+    /// The stiffness of the files is not square or not symmetric.
+    pub fn assembled(&self, members: &[f64]) -> Result<SymmetricBand, RowsError> {
+        if self.elements.is_empty() {
+            return Ok(storey_stiffness(members));
+        }
+        let mut stiffness = SymmetricBand::from_dense(&self.computed_stiffness)?;
+        let ends = self.elements.iter().map(|element| element.ends);
+        stiffness.add_springs(ends.zip(members.iter().copied()));
+        Ok(stiffness)
     }
 
     /// P of each storey \[N\]: the weight of its floor and of all floors above; empty if no floor has a weight.
@@ -239,14 +367,32 @@ impl Frame {
         self.mass.len()
     }
 
-    /// Actuators that it needs, each with a load cell: one at every floor, or at every tested storey.
+    /// `storey` or `element`, for messages and reports.
+    #[must_use]
+    pub const fn word_for_a_member(&self) -> &'static str {
+        if self.elements.is_empty() {
+            "storey"
+        } else {
+            "element"
+        }
+    }
+
+    /// Whether the rig carries it as a whole, by its matrices.
+    #[must_use]
+    pub const fn is_matrix_on_the_rig(&self) -> bool {
+        self.storeys.is_empty() && self.elements.is_empty()
+    }
+
+    /// Actuators that it needs, each with a load cell: one at every floor, or at every tested storey or element.
     #[must_use]
     pub fn axes(&self) -> usize {
-        let is_tested = |storey: &&Storey| storey.part != Part::Computed;
-        match &self.storeys[..] {
-            [] => self.degrees_of_freedom(),
-            storeys => storeys.iter().filter(is_tested).count(),
+        if self.is_matrix_on_the_rig() {
+            return self.degrees_of_freedom();
         }
+        let tested = self
+            .members()
+            .filter(|member| member.part != Part::Computed);
+        tested.count()
     }
 
     /// ιᵀMι \[kg\]: the mass that moves with the ground.
@@ -267,9 +413,15 @@ impl Frame {
         of_floors.hypot(self.matrix_uncertainty[0] * self.total_mass())
     }
 
-    /// The same frame with other matrices: each times its factor.
+    /// The same frame with other matrices of the files: each times its factor.
     #[must_use]
     pub fn scaled(&self, [mass, stiffness]: [f64; 2]) -> Self {
+        if !self.elements.is_empty() {
+            let alone = self.clone().with_elements(Vec::new());
+            return alone
+                .scaled([mass, stiffness])
+                .with_elements(self.elements.clone());
+        }
         let times = |matrix: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
             matrix
                 .iter()

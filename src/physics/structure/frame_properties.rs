@@ -7,10 +7,11 @@ use crate::contact::contact_time_step::Approach;
 use crate::integrator::Integrator;
 use crate::integrator::stability::{Met, longest_stable_step};
 use crate::structure::BandFactor;
-use crate::structure::frame::{Frame, Part, Storey};
+use crate::structure::elements::Elements;
+use crate::structure::frame::{Frame, Member, Part};
 use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
-    damping_matrix, modes, storey_stiffness,
+    damping_matrix, modes, storey_stiffness, storeys_of,
 };
 
 /// A frame, ready to be integrated.
@@ -19,6 +20,8 @@ pub struct FrameProperties {
     pub matrices: FrameMatrices,
     /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings.
     pub operator: SymmetricBand,
+    /// Those of a frame of matrices; None without any.
+    pub elements: Option<Elements>,
     /// Of K − G.
     pub modes: Modes,
 }
@@ -44,13 +47,11 @@ impl FrameProperties {
         let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
         let weights = frame.gravity_stiffness();
         let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
-        let computes = frame
-            .storeys
-            .iter()
-            .any(|storey| storey.part == Part::Computed);
+        let elements = frame.elements()?;
+        let computes = frame.members().any(|member| member.part == Part::Computed);
         let operator = if computes {
-            let storeys = frame.storeys.iter().map(Storey::operator_stiffness);
-            storey_stiffness(&storeys.collect::<Vec<f64>>())
+            let members = frame.members().map(|member| member.operator_stiffness());
+            frame.assembled(&members.collect::<Vec<f64>>())?
         } else {
             stiffness.clone()
         };
@@ -68,8 +69,15 @@ impl FrameProperties {
         Ok(Self {
             matrices,
             operator,
+            elements,
             modes,
         })
+    }
+
+    /// Whether the tangent of each storey or element can be followed: a full matrix on the rig keeps its initial stiffness.
+    #[must_use]
+    pub fn has_tangents(&self) -> bool {
+        self.elements.is_some() || storeys_of(&self.matrices.stiffness).is_some()
     }
 
     /// A tenth of the shortest period \[s\] (Melo et al. 2006, sec. 5).
@@ -147,20 +155,23 @@ impl FrameProperties {
             share: 0.0,
             damping_ratio: 0.0,
         };
-        if let Some(frame) = virtual_specimen.filter(|frame| !frame.storeys.is_empty()) {
-            let behaves: Vec<f64> = frame
-                .storeys
+        let assembled = |frame: &Frame, members: &[f64]| frame.assembled(members).ok();
+        if let Some(frame) = virtual_specimen.filter(|frame| !frame.is_matrix_on_the_rig()) {
+            let members: Vec<Member<'_>> = frame.members().collect();
+            let behaves: Vec<f64> = members
                 .iter()
-                .map(|storey| {
-                    let largest = storey.largest_stiffness();
-                    largest.unwrap_or(storey.operator_stiffness())
+                .map(|member| {
+                    let largest = member.largest_stiffness();
+                    largest.unwrap_or(member.operator_stiffness())
                 })
                 .collect();
-            met.highest = own.max(self.highest(&self.matrices.net(&storey_stiffness(&behaves))));
-            let storeys = || frame.storeys.iter().zip(&behaves);
+            if let Some(behaving) = assembled(frame, &behaves) {
+                met.highest = own.max(self.highest(&self.matrices.net(&behaving)));
+            }
+            let storeys = || members.iter().zip(&behaves);
             // G is in both stiffnesses, and cancels in their difference.
             let mut weights = frame.gravity_stiffness();
-            weights.resize(frame.storeys.len(), 0.0);
+            weights.resize(members.len(), 0.0);
             met.share = storeys()
                 .zip(weights)
                 .map(|((storey, behaves), g)| {
@@ -173,7 +184,17 @@ impl FrameProperties {
                 let beyond: Vec<f64> = storeys()
                     .map(|(storey, b)| (b - storey.operator_stiffness()).max(trifle(*b)))
                     .collect();
-                met.shortfall = self.highest(&storey_stiffness(&beyond));
+                let beyond = match &self.elements {
+                    // The stiffness of the files is what is assumed; a little of the whole keeps the matrix positive definite.
+                    Some(elements) => {
+                        let mut matrix = self.matrices.stiffness.clone();
+                        matrix.scale(1e-12);
+                        matrix.add_springs(elements.ends.iter().copied().zip(beyond));
+                        matrix
+                    }
+                    None => storey_stiffness(&beyond),
+                };
+                met.shortfall = self.highest(&beyond);
             }
         }
         longest_stable_step(integrator, &met)

@@ -7,6 +7,7 @@
 pub mod beam;
 pub mod cell_damping;
 mod damping;
+pub mod elements;
 pub mod energies;
 pub mod frame;
 pub mod frame_properties;

@@ -7,9 +7,14 @@
 //! scale of the specimen, which is one of n equal parts. Only shear is transmitted: no rotation and no moment is imposed. A measured floor
 //! stands on the measured floors below it. So the drift of a tested storey is the measured one, and that of a computed storey is the
 //! imposed one.
+//!
+//! In a frame of matrices with elements, K is computed, and each tested element is an assembly of its own: u = λ_x (x_to − x_from), and
+//! n f/λ_f acts at its second end, the negative of it at the first. The displacement of a degree of freedom is the imposed one; an
+//! element has a measured deformation of its own.
 
 use super::cell_damping::CellDamping;
-use super::frame::{Frame, Part, Scale, Storey};
+use super::elements::{ElementReading, Elements, add_force, deformation};
+use super::frame::{Frame, Member, Part, Scale};
 use super::shear_building::shears;
 use crate::relaxation::maxwell::Motion;
 use crate::relaxation::relaxation_state::{Deformed, RelaxationState};
@@ -18,6 +23,9 @@ use crate::statistics::DeclaredNoise;
 
 /// Doublings of a move in the search for zero shear: from the elastic move to more than 10⁹ times as far.
 const MOST_DOUBLINGS: u32 = 30;
+
+/// Relative size of a singular value that counts as zero: positions that are held twice differ by rounding alone.
+const SINGULAR: f64 = 1e-12;
 
 /// What carries a storey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,25 +38,28 @@ enum Support {
     Below,
 }
 
-/// The storeys of a frame that are on the rig, and their assemblies.
+/// The storeys or elements of a frame that are on the rig, and their assemblies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assemblies {
-    /// From the ground up.
+    /// From the ground up, or in the order of the elements.
     supports: Vec<Support>,
     /// The same; full for a computed storey.
     scales: Vec<Scale>,
+    /// None for storeys, of which each joins its floor to the one below.
+    elements: Option<Elements>,
 }
 
-/// From the ground up; empty for a frame without storeys.
+/// From the ground up, or in the order of the elements; empty for a matrix on the rig.
 fn supports(frame: &Frame) -> Vec<Support> {
     let mut stood = false;
-    let support = |storey: &Storey| match storey.part {
+    let is_chain = frame.elements.is_empty();
+    let support = |member: Member<'_>| match member.part {
         Part::Computed => {
             stood = false;
             Support::Computed
         }
         Part::Tested { apart, .. } => {
-            let joined = std::mem::replace(&mut stood, true) && !apart;
+            let joined = std::mem::replace(&mut stood, true) && !apart && is_chain;
             if joined {
                 Support::Below
             } else {
@@ -56,18 +67,17 @@ fn supports(frame: &Frame) -> Vec<Support> {
             }
         }
     };
-    frame.storeys.iter().map(support).collect()
+    frame.members().map(support).collect()
 }
 
-/// The scale of every storey from the ground up; full for a computed one.
+/// The scale of every storey or element; full for a computed one.
 fn scales(frame: &Frame) -> Vec<Scale> {
-    let scale = |storey: &Storey| storey.part.scale();
-    frame.storeys.iter().map(scale).collect()
+    frame.members().map(|member| member.part.scale()).collect()
 }
 
-/// The storeys on the rig from the ground up, each with whether it stands on the strong floor.
-pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
-    let storeys = frame.storeys.iter().zip(supports(frame));
+/// The storeys on the rig from the ground up, or the elements, each with whether it stands on the strong floor.
+pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (Member<'_>, bool)> {
+    let storeys = frame.members().zip(supports(frame));
     storeys.filter_map(|(storey, support)| match support {
         Support::Computed => None,
         support => Some((storey, support == Support::StrongFloor)),
@@ -147,6 +157,14 @@ impl Assemblies {
     #[must_use]
     pub fn of(frame: &Frame) -> Option<Self> {
         let (supports, scales) = (supports(frame), scales(frame));
+        // A stiffness that is no matrix has no properties either: nothing is integrated with it.
+        if let Ok(Some(elements)) = frame.elements() {
+            return Some(Self {
+                supports,
+                scales,
+                elements: Some(elements),
+            });
+        }
         let whole = |(storey, support): (usize, &Support)| {
             let as_one = if storey == 0 {
                 Support::StrongFloor
@@ -156,7 +174,11 @@ impl Assemblies {
             *support == as_one && scales[storey] == Scale::FULL
         };
         let is_whole = supports.iter().enumerate().all(whole);
-        (!is_whole).then_some(Self { supports, scales })
+        (!is_whole).then_some(Self {
+            supports,
+            scales,
+            elements: None,
+        })
     }
 
     /// So many floors, as one specimen on the rig.
@@ -166,7 +188,14 @@ impl Assemblies {
         Self {
             supports: std::iter::once(Support::StrongFloor).chain(above).collect(),
             scales: vec![Scale::FULL; floors.max(1)],
+            elements: None,
         }
+    }
+
+    /// The elements of a frame of matrices; None for storeys.
+    #[must_use]
+    pub const fn elements(&self) -> Option<&Elements> {
+        self.elements.as_ref()
     }
 
     /// Whether every storey is tested, and all stand on each other: the specimen is the frame, at full scale or not.
@@ -174,7 +203,7 @@ impl Assemblies {
     pub fn is_whole_frame(&self) -> bool {
         let storeys = self.supports.iter().skip(1);
         storeys.fold(
-            self.supports.first() == Some(&Support::StrongFloor),
+            self.elements.is_none() && self.supports.first() == Some(&Support::StrongFloor),
             |is, it| is && *it == Support::Below,
         )
     }
@@ -245,6 +274,20 @@ impl Assemblies {
     /// are those of the prototype.
     #[must_use]
     pub fn in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
+        if let Some(elements) = &self.elements {
+            // Without a motion there are no velocities.
+            let moving = if floors.is_empty() {
+                0
+            } else {
+                self.supports.len()
+            };
+            let elements = elements.ends.iter().zip(&self.supports).take(moving);
+            let relative = elements.map(|(ends, support)| match support {
+                Support::Computed => 0.0,
+                _ => deformation(*ends, floors),
+            });
+            return relative.collect();
+        }
         let (mut below, mut base) = (0.0, 0.0);
         let storeys = self.supports.iter().zip(floors);
         let relative = storeys.map(|(support, floor)| {
@@ -262,7 +305,7 @@ impl Assemblies {
     }
 
     /// The restoring forces of the floors become those of the actuators at the tested storeys \[N\]; 0 for computed ones. The numbers are
-    /// those of the prototype.
+    /// those of the prototype. Those of elements do not follow from the forces of the degrees of freedom.
     #[must_use]
     pub fn forces_in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
         let mut shear = vec![0.0; floors.len()];
@@ -297,6 +340,28 @@ impl Assemblies {
         self.on_the_rig(self.forces_in_assemblies(floors), |scale, prototype| {
             prototype / scale.forces()
         })
+    }
+
+    /// Measured displacements \[m\] and forces \[N\] of the axes, from those of the floors; the elements of a frame of matrices have
+    /// their own `readings`.
+    #[must_use]
+    pub fn axes_read(
+        &self,
+        [displacement, force]: [&[f64]; 2],
+        readings: &[ElementReading],
+    ) -> [Vec<f64>; 2] {
+        if self.elements.is_none() {
+            return [self.axes_of(displacement), self.forces_of(force)];
+        }
+        let of = |value: fn(&ElementReading) -> f64| readings.iter().map(value).collect();
+        [
+            self.on_the_rig(of(|read| read.deformation), |scale, prototype| {
+                prototype * scale.displacement
+            }),
+            self.on_the_rig(of(|read| read.force), |scale, prototype| {
+                prototype / scale.forces()
+            }),
+        ]
     }
 
     /// Stiffnesses of the storeys at the axes on the rig \[N/m\], from those of all storeys of the prototype.
@@ -415,8 +480,12 @@ impl Assemblies {
 #[derive(Clone, Debug)]
 pub struct Substructures {
     assemblies: Assemblies,
-    /// From the ground up; None for a tested storey.
+    /// From the ground up, or in the order of the elements; None for a tested one.
     computed: Vec<Option<ComputedStorey>>,
+    /// Imposed displacements of the degrees of freedom of a frame of matrices \[m\]; empty for storeys.
+    imposed: Vec<f64>,
+    /// On the stiffness of the files.
+    matrix_factor: f64,
 }
 
 impl Substructures {
@@ -424,11 +493,14 @@ impl Substructures {
     #[must_use]
     pub fn of(frame: &Frame) -> Option<Self> {
         let assemblies = Assemblies::of(frame)?;
-        let computed = frame.storeys.iter().map(|storey| {
-            (storey.part == Part::Computed).then(|| ComputedStorey::new(&storey.behaviour))
+        let computed = frame.members().map(|member| {
+            (member.part == Part::Computed).then(|| ComputedStorey::new(member.behaviour))
         });
+        let matrix = assemblies.elements().map(|elements| &elements.matrix);
         Some(Self {
             computed: computed.collect(),
+            imposed: matrix.map_or_else(Vec::new, |matrix| vec![0.0; matrix.order()]),
+            matrix_factor: 1.0,
             assemblies,
         })
     }
@@ -438,16 +510,95 @@ impl Substructures {
         &self.assemblies
     }
 
-    /// Every computed storey comes to rest at zero shear.
-    pub fn rest(&mut self) {
+    /// Every computed storey comes to rest at zero shear. The axes hold these displacements \[m\].
+    pub fn rest(&mut self, axes: &[f64]) {
         self.computed
             .iter_mut()
             .flatten()
             .for_each(ComputedStorey::rest);
+        self.settle(axes);
+    }
+
+    /// A frame of matrices comes to the displacements at which K and its computed elements balance, where the axes hold the tested ones
+    /// \[m\]: ½xᵀKx + ½Σ k (bᵀx − u)² is least, with u of a computed element that without force, and a tested one held.
+    fn settle(&mut self, axes: &[f64]) {
+        let Some(elements) = &self.assemblies.elements else {
+            return;
+        };
+        if self.imposed.iter().chain(axes).all(|at| *at == 0.0) {
+            return;
+        }
+        let order = self.imposed.len();
+        let scales = self.assemblies.scales();
+        let mut axes = axes.iter().zip(scales);
+        let (mut held, mut free) = (Vec::new(), Vec::new());
+        for (member, ends) in elements.ends.iter().enumerate() {
+            match &self.computed[member] {
+                Some(computed) => free.push((*ends, elements.stiffness[member], computed.drift)),
+                None => held.extend(
+                    axes.next()
+                        .map(|(axis, scale)| (*ends, axis * scale.displacements())),
+                ),
+            }
+        }
+        // The unit of a held deformation, so that all rows have one size.
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
+        let diagonal = &mut elements.matrix.band(0).iter().copied();
+        let unit = largest(&mut diagonal.chain(elements.stiffness.iter().copied()));
+        let size = order + held.len();
+        let mut rows = nalgebra::DMatrix::zeros(size, size);
+        let mut right = nalgebra::DVector::zeros(size);
+        for row in 0..order {
+            for column in 0..order {
+                rows[(row, column)] = self.matrix_factor * elements.matrix.entry(row, column);
+            }
+        }
+        for (ends, stiffness, unloaded) in free {
+            super::elements::add_springs(
+                std::iter::once((ends, stiffness)),
+                |row, column, more| {
+                    rows[(row, column)] += more;
+                },
+            );
+            let mut force = vec![0.0; order];
+            add_force(ends, stiffness * unloaded, &mut force);
+            for (right, force) in right.iter_mut().zip(force) {
+                *right += force;
+            }
+        }
+        for (constraint, (ends, deformation)) in held.into_iter().enumerate() {
+            let mut sides = vec![0.0; order];
+            add_force(ends, unit, &mut sides);
+            for (column, side) in sides.into_iter().enumerate() {
+                rows[(order + constraint, column)] = side;
+                rows[(column, order + constraint)] = side;
+            }
+            right[order + constraint] = unit * deformation;
+        }
+        // Elements that close a circle hold the same displacement twice: the least squares of a singular system.
+        let settled = rows.svd(true, true).solve(&right, SINGULAR * unit);
+        if let Ok(settled) = settled {
+            self.imposed.copy_from_slice(&settled.as_slice()[..order]);
+        }
+        for (element, ends) in self.computed.iter_mut().zip(&elements.ends) {
+            if let Some(element) = element {
+                element.settle(deformation(*ends, &self.imposed));
+            }
+        }
     }
 
     /// The computed storeys follow the floors to these displacements \[m\] within `seconds` of simulated time.
     pub fn advance(&mut self, floors: &[f64], seconds: f64) {
+        if let Some(elements) = &self.assemblies.elements {
+            for (element, ends) in self.computed.iter_mut().zip(&elements.ends) {
+                if let Some(element) = element {
+                    element.advance(deformation(*ends, floors), seconds);
+                }
+            }
+            self.imposed.copy_from_slice(floors);
+            return;
+        }
         let mut below = 0.0;
         for (storey, floor) in self.computed.iter_mut().zip(floors) {
             let drift = floor - std::mem::replace(&mut below, *floor);
@@ -455,6 +606,33 @@ impl Substructures {
                 storey.advance(drift, seconds);
             }
         }
+    }
+
+    /// The elements of a frame of matrices, from displacements \[m\] and forces \[N\] of the axes; none for storeys.
+    pub fn elements_read(&self, axes: (&[f64], &[f64])) -> Vec<ElementReading> {
+        let Some(elements) = &self.assemblies.elements else {
+            return Vec::new();
+        };
+        let mut axes = axes.0.iter().zip(axes.1);
+        let members = elements.ends.iter().zip(&self.computed);
+        let read = members.zip(&self.assemblies.scales);
+        read.map(|((ends, computed), scale)| {
+            let target = deformation(*ends, &self.imposed);
+            if let Some(element) = computed {
+                return ElementReading {
+                    target,
+                    deformation: target,
+                    force: element.shear,
+                };
+            }
+            let (displacement, force) = axes.next().unwrap_or((&0.0, &0.0));
+            ElementReading {
+                target,
+                deformation: displacement / scale.displacement,
+                force: force * scale.forces(),
+            }
+        })
+        .collect()
     }
 
     /// Displacement \[m\] and restoring force \[N\] of every floor, from those of the axes and the present computed storeys.
@@ -466,6 +644,17 @@ impl Substructures {
     ) {
         displacement.clear();
         force.clear();
+        if let Some(elements) = &self.assemblies.elements {
+            displacement.extend_from_slice(&self.imposed);
+            force.resize(self.imposed.len(), 0.0);
+            elements
+                .matrix
+                .mul_add(self.matrix_factor, &self.imposed, force);
+            for (ends, read) in elements.ends.iter().zip(self.elements_read(axes)) {
+                add_force(*ends, read.force, force);
+            }
+            return;
+        }
         force.resize(self.computed.len(), 0.0);
         let mut axes = axes.0.iter().zip(axes.1);
         let (mut below, mut base, mut base_floor) = (0.0, 0.0, None);
@@ -496,9 +685,13 @@ impl Substructures {
         }
     }
 
-    /// The same with the stiffnesses of all computed storeys multiplied by `factors`, one per storey.
+    /// The same with the stiffnesses of all computed storeys multiplied by `factors`, one per storey. For a frame of matrices, the last
+    /// factor is that of the stiffness of the files.
     #[must_use]
     pub fn stiffer(mut self, factors: &[f64]) -> Self {
+        if let (Some(_), Some(matrix)) = (self.assemblies.elements(), factors.last()) {
+            self.matrix_factor = *matrix;
+        }
         for (storey, factor) in self.computed.iter_mut().zip(factors) {
             if let Some(storey) = storey
                 && *factor != 1.0
@@ -566,6 +759,13 @@ impl ComputedStorey {
         self.instantaneous = self.relaxing.advance(&mut self.model, &motion, from, to);
         self.shear = self.rate.measured_force(self.instantaneous, velocity) + self.relaxing.force();
         self.drift = drift;
+    }
+
+    /// It moves slowly to this drift \[m\].
+    fn settle(&mut self, drift: f64) {
+        self.instantaneous = self.model.move_to(drift);
+        self.drift = drift;
+        self.shear = self.instantaneous;
     }
 
     /// It unloads slowly to zero shear. Its model keeps its path: a copy of it searches the drift, so that it passes that drift once.

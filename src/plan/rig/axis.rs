@@ -10,6 +10,8 @@ use crate::{
 pub struct AxisPlan {
     /// The storey that it moves, from 0; None: the tested storeys in their order.
     pub storey: Option<usize>,
+    /// The element that it moves, from 0; None: the tested elements in their order.
+    pub element: Option<usize>,
     /// Polarity: +1 or −1.
     pub polarity: Option<f64>,
     /// \[m\]

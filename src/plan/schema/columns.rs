@@ -23,6 +23,7 @@ pub const VELOCITY: Column = column("velocity_m_per_s", Dimension::VELOCITY);
 pub const RESTORING_FORCE: Column = column("restoring_force_n", Dimension::FORCE);
 pub const TANGENT_STIFFNESS: Column = column("tangent_stiffness_n_per_m", Dimension::STIFFNESS);
 pub const STOREY: Column = column("storey", Dimension::NUMBER);
+pub const ELEMENT: Column = column("element", Dimension::NUMBER);
 pub const COMPUTED: Column = column("computed_m", Dimension::LENGTH);
 pub const ACCELERATION: Column = column("acceleration_m_per_s2", Dimension::ACCELERATION);
 pub const DRIFT: Column = column("drift_m", Dimension::LENGTH);
@@ -32,6 +33,8 @@ pub const SPRING_SHEAR: Column = column("spring_shear_n", Dimension::FORCE);
 pub const COMMAND_ON_THE_RIG: Column = column("command_rig_m", Dimension::LENGTH);
 pub const DISPLACEMENT_ON_THE_RIG: Column = column("displacement_rig_m", Dimension::LENGTH);
 pub const FORCE_ON_THE_RIG: Column = column("force_rig_n", Dimension::FORCE);
+/// Of an element of a frame of matrices: measured displacement of its second end relative to the first.
+pub const DEFORMATION: Column = column("deformation_m", Dimension::LENGTH);
 pub const STOREY_ENERGY: Column = column("storey_energy_j", Dimension::ENERGY);
 pub const ENERGY: Column = column("energy_j", Dimension::ENERGY);
 pub const RESTORING_ENERGY: Column = column("restoring_energy_j", Dimension::ENERGY);

@@ -62,6 +62,7 @@ const fn is_alike(source: Source) -> bool {
         source,
         Source::StoreyMass { .. }
             | Source::StoreyStiffness { .. }
+            | Source::ElementStiffness { .. }
             | Source::DampingRatio { .. }
             | Source::ForceScale(_)
             | Source::DisplacementScale(_)

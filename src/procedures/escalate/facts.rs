@@ -15,6 +15,7 @@ pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
     Facts {
         conditions: Some(&series.condition),
         frame_damping: None,
+        unloads_storeys: true,
         figures,
         shared_figures: &[],
         headline: vec![

@@ -18,6 +18,7 @@ use crate::run::{Keep, Performed};
 use psd_physics::impact::summary::ImpactEnding;
 use psd_physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
 use psd_physics::integrator::tangents::HasTangents;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
@@ -305,6 +306,10 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         force.copy_from_slice(V::slice_of(&self.solver.effective_force()));
     }
 
+    fn read_elements(&mut self, elements: &[ElementReading]) {
+        self.solver.read_elements(elements);
+    }
+
     fn complete(&mut self, reading: &Reading) {
         self.solver.complete(
             V::view_of(&reading.displacement),
@@ -376,6 +381,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
                 &reading.displacement,
                 &reading.force,
                 gravity_force,
+                &self.solver.structure().elements,
             );
             let storey_energy = last.storey_energy.clone();
             self.floors.push(FloorStep {

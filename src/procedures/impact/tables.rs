@@ -44,10 +44,22 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
     Number(columns::TRACKING_INDICATOR, |step| step.tracking.indicator),
 ];
 
-/// The numeric columns of both tables.
+/// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
     let of_floors = shake::tables::columns(shake::tables::struck());
-    [numeric(STEPS), of_floors].concat()
+    let of_elements = numeric(&shake::tables::elements());
+    [numeric(STEPS), of_floors, of_elements].concat()
+}
+
+/// The table of the elements of a frame of matrices; None without elements.
+pub(crate) fn of_elements<'a>(
+    name: &str,
+    history: &'a ImpactHistory,
+    assemblies: Option<Assemblies>,
+) -> Option<Table<'a>> {
+    let frame = history.frame.as_ref()?;
+    let number = |step: usize| history.steps[step].step;
+    shake::tables::of_elements(name, &frame.floors, number, assemblies)
 }
 
 /// The table under this name.

@@ -6,6 +6,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::{actuators, budget_table, tracking};
 use crate::report::{Run, number};
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::Assemblies;
 use psd_physics::structure::{SymmetricBand, storeys_of, widen};
 use psd_plan::procedures::shake::block as schema;
@@ -42,6 +43,7 @@ pub(crate) fn shaken(
             frame,
             schema::MAX_DISPLACEMENT,
         ));
+        body.extend(element_table(&history.steps));
         body.extend(noise_note(run));
         body.extend(tracking::table(procedure, frame));
         body.push(energy_balance(history));
@@ -108,8 +110,11 @@ pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> 
     run.plan.specimens.get(specimen)?.frame.as_ref()
 }
 
-/// Whether the stiffness is that of one storey upon the other, each of which shows its own as it moves.
-fn of_storeys(frame: &Frame) -> bool {
+/// Whether the stiffness is that of storeys or elements, each of which shows its own as it moves.
+fn has_tangents(frame: &Frame) -> bool {
+    if !frame.elements.is_empty() {
+        return true;
+    }
     SymmetricBand::from_dense(&frame.stiffness)
         .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
 }
@@ -122,7 +127,7 @@ pub(crate) fn integrated(
     ratios: &[f64],
 ) -> String {
     let integrator = match integrator {
-        Integrator::Tangent if frame.is_some_and(|frame| !of_storeys(frame)) => {
+        Integrator::Tangent if frame.is_some_and(|frame| !has_tangents(frame)) => {
             "constant average acceleration with the initial stiffness matrix".to_owned()
         }
         Integrator::Tangent => {
@@ -264,6 +269,42 @@ pub(crate) fn storey_table<S: Floors>(
     })
 }
 
+/// One row an element of a frame of matrices; None without elements.
+pub(crate) fn element_table<S: Floors>(steps: &[S]) -> Option<Block> {
+    let last = steps.last()?.elements();
+    let read = |of: fn(&ElementReading) -> f64| {
+        move |step: &S| -> Vec<f64> { step.elements().iter().map(of).collect() }
+    };
+    let deformation = largest(steps, read(|element| element.deformation));
+    let force = largest(steps, read(|element| element.force));
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |most: f64, value| most.max(value.abs()))
+    };
+    let row = |element: usize| -> Vec<Text> {
+        let moved = |value: f64| number::text_beside(value, whole(&deformation), Dimension::LENGTH);
+        vec![
+            (element + 1).to_string().into(),
+            moved(deformation[element]).into(),
+            moved(last[element].deformation).into(),
+            number::text_beside(force[element], whole(&force), Dimension::FORCE).into(),
+        ]
+    };
+    let columns = [
+        "Element",
+        "Peak deformation",
+        "Final deformation",
+        "Peak force",
+    ];
+    (!last.is_empty()).then(|| {
+        Block::Table(Table {
+            columns: columns.map(Column::numbers).to_vec(),
+            rows: (0..last.len()).map(row).collect(),
+        })
+    })
+}
+
 /// An entry of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the largest.
 pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
     let values = result.value.list().unwrap_or_default();
@@ -317,7 +358,7 @@ pub(crate) fn unloaded(
         .and_then(|planned| planned.kind.specimen());
     let frame = specimen.and_then(|specimen| frame_of(run, specimen));
     let moves = steps.len() - 1;
-    let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
+    let by = if frame.is_some_and(|frame| !has_tangents(frame)) {
         "each with the initial stiffness matrix"
     } else {
         "each with the storey stiffnesses last measured"
@@ -378,7 +419,7 @@ pub(crate) fn unloaded(
     }));
 }
 
-fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
+fn largest<S>(steps: &[S], read: impl Fn(&S) -> Vec<f64>) -> Vec<f64> {
     let mut largest: Vec<f64> = Vec::new();
     for step in steps {
         let values = read(step);

@@ -10,6 +10,7 @@ use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::ground::{acceleration_at, next_acceleration};
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{FloorMotion, ShakeHistory, ShakeStep};
@@ -137,6 +138,10 @@ impl Stepped for Shaken<'_> {
         force.copy_from_slice(self.solver.effective_force());
     }
 
+    fn read_elements(&mut self, elements: &[ElementReading]) {
+        self.solver.read_elements(elements);
+    }
+
     fn complete(&mut self, reading: &Reading) {
         self.solver.complete(&reading.displacement, &reading.force);
     }
@@ -184,6 +189,7 @@ impl Stepped for Shaken<'_> {
                 &reading.displacement,
                 &reading.force,
                 gravity_force,
+                &self.solver.state().elements,
             ),
             energies: last.energies,
         };

@@ -38,7 +38,8 @@ fn rows<'a, F: Floors + 'a, S>(
 ) -> Vec<FloorRow<'a, S>> {
     let storeys = |(floors, step): (&'a F, &'a S)| {
         let mut on_the_rig = vec![None; floors.command().len()];
-        if let Some(assemblies) = scaled {
+        // Elements have a table of their own.
+        if let Some(assemblies) = scaled.filter(|_| floors.elements().is_empty()) {
             let axes = assemblies
                 .axes_of(floors.command())
                 .into_iter()
@@ -84,7 +85,14 @@ fn written_rows<'a, S>(
         .is_some_and(|row| !row.floors.gravity_force.is_empty());
     let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
     columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
-    let of_rig = scaled.map_or_else(Vec::new, |_| on_the_rig());
+    let has_elements = rows
+        .first()
+        .is_some_and(|row| !row.floors.elements.is_empty());
+    let of_axes = [columns::TRACKING_ENERGY_ERROR, columns::TRACKING_INDICATOR].map(Some);
+    columns.retain(|column| !has_elements || !of_axes.contains(&column.numeric()));
+    let of_rig = scaled
+        .filter(|_| !has_elements)
+        .map_or_else(Vec::new, |_| on_the_rig());
     written(&joined([columns, of_rig]), rows)
 }
 
@@ -298,6 +306,82 @@ pub(crate) fn unloaded<'a>() -> Vec<TableColumn<FloorRow<'a, UnloadStep>>> {
 /// The table of an unloading; step 0 is its start.
 pub(crate) fn unloading(steps: &[UnloadStep], scaled: Option<&Assemblies>) -> Vec<Column> {
     written_steps(unloaded(), steps, scaled)
+}
+
+/// An element of a frame of matrices at the end of a step.
+pub(crate) struct ElementRow<'a> {
+    step: u64,
+    floors: FloorsAt<'a>,
+    element: usize,
+    /// Command and measured displacement \[m\], and force \[N\] of its axis.
+    on_the_rig: Option<[f64; 3]>,
+}
+
+/// The columns of the elements.
+pub(crate) fn elements<'a>() -> Vec<TableColumn<ElementRow<'a>>> {
+    vec![
+        Integer(columns::STEP, |row: &ElementRow<'a>| row.step),
+        Integer(columns::ELEMENT, |row| row.element as u64 + 1),
+        Number(columns::TIME, |row| row.floors.time),
+        Number(columns::COMMAND, |row| {
+            row.floors.elements[row.element].target
+        }),
+        Number(columns::DEFORMATION, |row| {
+            row.floors.elements[row.element].deformation
+        }),
+        Number(columns::RESTORING_FORCE, |row| {
+            row.floors.elements[row.element].force
+        }),
+        Number(columns::TRACKING_ENERGY_ERROR, |row| {
+            row.floors.tracking[row.element].energy_error
+        }),
+        Number(columns::TRACKING_INDICATOR, |row| {
+            row.floors.tracking[row.element].indicator
+        }),
+        Optional(columns::COMMAND_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[command, ..]| command)
+        }),
+        Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[_, displacement, _]| displacement)
+        }),
+        Optional(columns::FORCE_ON_THE_RIG, |row| {
+            row.on_the_rig.map(|[.., force]| force)
+        }),
+    ]
+}
+
+/// The table of the elements of a frame of matrices; None without elements. `number` is the number of a step from its index.
+pub(crate) fn of_elements<'a, S: Floors>(
+    name: &str,
+    steps: &'a [S],
+    number: impl Fn(usize) -> u64 + 'a,
+    assemblies: Option<Assemblies>,
+) -> Option<Table<'a>> {
+    let assemblies = assemblies?;
+    let count = steps.first()?.elements().len();
+    let rows = move |range: std::ops::Range<usize>| {
+        let mut rows = Vec::with_capacity(count * range.len());
+        for index in range {
+            let step = &steps[index];
+            let mut on_the_rig = vec![None; count];
+            let read = [step.measured(), step.restoring_force()];
+            let [displacement, force] = assemblies.axes_read(read, step.elements());
+            let axes = assemblies.axes_of(step.command()).into_iter();
+            let axes = axes.zip(displacement).zip(force);
+            for (element, ((command, displacement), force)) in assemblies.tested().zip(axes) {
+                on_the_rig[element] = Some([command, displacement, force]);
+            }
+            let row = |(element, on_the_rig)| ElementRow {
+                step: number(index),
+                floors: step.at(),
+                element,
+                on_the_rig,
+            };
+            rows.extend(on_the_rig.into_iter().enumerate().map(row));
+        }
+        written(&elements(), &rows)
+    };
+    (count > 0).then(|| Table::of_steps(format!("{name}_elements"), steps.len(), count, rows))
 }
 
 fn joined<T, const N: usize>(parts: [Vec<TableColumn<T>>; N]) -> Vec<TableColumn<T>> {

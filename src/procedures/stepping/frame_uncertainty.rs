@@ -15,7 +15,7 @@ use psd_plan::record::{FloorMotion, NamedResult};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::Source;
 use psd_plan::uncertainty::engine::{CLOSE, Shifts};
-use psd_plan::{Frame, Mode, Part, ShakeDamping, Stepping};
+use psd_plan::{Frame, Member, Mode, Part, ShakeDamping, Stepping};
 
 /// The uncertain inputs of a frame.
 #[derive(Clone, Copy)]
@@ -77,6 +77,11 @@ impl<'run> FrameUncertainty<'run> {
                 ),
             ]
         });
+        let elements = self.frame.map_or(&[][..], |frame| &frame.elements);
+        let elements = elements.iter().enumerate().map(|(element, it)| {
+            let source = Source::ElementStiffness { specimen, element };
+            (source, it.stiffness_uncertainty)
+        });
         let [mass, stiffness] = self
             .frame
             .map_or([0.0; 2], |frame| frame.matrix_uncertainty);
@@ -92,6 +97,7 @@ impl<'run> FrameUncertainty<'run> {
             )
         });
         let all = storeys
+            .chain(elements)
             .chain(matrices)
             .chain(modes)
             .chain(stated.iter().copied());
@@ -121,7 +127,21 @@ impl<'run> FrameUncertainty<'run> {
             }
         }
         if frame.storeys.is_empty() {
-            return Ok(frame.scaled(factors));
+            let mut elements = frame.elements.clone();
+            for (source, by) in shifts {
+                match *source {
+                    Source::ElementStiffness { specimen, element } if specimen == self.specimen => {
+                        let moved = &mut elements[element];
+                        let stiffness = moved.stiffness;
+                        moved.stiffness += by * moved.stiffness_uncertainty;
+                        if moved.part == Part::Computed {
+                            moved.behaviour = moved.behaviour.scaled(moved.stiffness / stiffness);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            return Ok(frame.scaled(factors).with_elements(elements));
         }
         Ok(frame.with(|storeys| {
             for (source, by) in shifts {
@@ -174,6 +194,7 @@ impl<'run> FrameUncertainty<'run> {
         FrameRun {
             matrices: steps.properties.matrices.clone(),
             operator: steps.properties.operator.clone(),
+            elements: steps.properties.elements.clone(),
             computed_factors: Vec::new(),
             integrator: self.stepping.integrator,
             i_modification: self.stepping.i_modification,
@@ -195,15 +216,30 @@ impl<'run> FrameUncertainty<'run> {
         )
     }
 
-    /// The factor on the stiffness of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is.
+    /// The factor on the stiffness of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is. That of
+    /// the stiffness of the files beside elements is the last.
     pub fn computed_factors(&self, moved: &Frame) -> Vec<f64> {
-        let storeys = self.frame.map_or(&[][..], |frame| &frame.storeys);
-        if storeys.iter().all(|storey| storey.part != Part::Computed) {
+        let Some(frame) = self.frame else {
+            return Vec::new();
+        };
+        let has_elements = !frame.elements.is_empty();
+        let is_computed = |member: Member<'_>| member.part == Part::Computed;
+        if !has_elements && !frame.members().any(is_computed) {
             return Vec::new();
         }
-        let storeys = storeys.iter().zip(&moved.storeys);
-        storeys
+        let members = frame.members().zip(moved.members());
+        // All entries of a matrix have one factor.
+        let of_matrix = frame
+            .computed_stiffness
+            .iter()
+            .zip(&moved.computed_stiffness)
+            .find_map(|(own, moved)| {
+                let entries = own.iter().zip(moved).find(|(own, _)| **own != 0.0);
+                entries.map(|(own, moved)| moved / own)
+            });
+        members
             .map(|(own, moved)| moved.stiffness / own.stiffness)
+            .chain(has_elements.then(|| of_matrix.unwrap_or(1.0)))
             .collect()
     }
 
@@ -218,6 +254,7 @@ impl<'run> FrameUncertainty<'run> {
             target: floors.command.clone(),
             displacement: floors.displacement.clone(),
             force: floors.restoring_force.clone(),
+            elements: floors.elements.clone(),
         };
         let readings = recorded.map(reading).collect();
         self.passed(steps, readings, Vec::new(), substructures)

@@ -7,6 +7,7 @@ use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit
 use crate::run::session::{Session, first};
 use psd_physics::impact::ImpactInput;
 use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::StoreyReadings;
 use psd_physics::structure::{Matrices, drifts, shears, storeys_of};
@@ -208,8 +209,8 @@ impl Stiffer {
     }
 }
 
-/// Every spring of a structure: the specimen of one degree of freedom, or every storey of a frame by its shear and drift; none for a
-/// frame without storeys. If one storey is stiffer by ΔK, M⁻¹(K − `K_I`) is a matrix of rank one; its squared frequency is ΔK times the
+/// Every spring of a structure: the specimen of one degree of freedom, every storey of a frame by its shear and drift, or every element of
+/// a frame of matrices; none for a matrix on the rig. If one storey is stiffer by ΔK, M⁻¹(K − `K_I`) is a matrix of rank one; its squared frequency is ΔK times the
 /// sum of 1/M of the floors that the storey joins.
 pub(crate) struct StifferSprings {
     springs: Vec<(String, Stiffer)>,
@@ -253,6 +254,27 @@ impl StifferSprings {
         start: &Start,
     ) -> Self {
         let (matrices, first) = (&properties.matrices, &start.reading);
+        let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
+        if let Some(elements) = &properties.elements {
+            let judged = |element: usize| {
+                let ends = elements.ends[element].into_iter().flatten();
+                let read = start.elements[element];
+                let judged = Judged {
+                    integrator: plan.integrator,
+                    operator_stiffness: elements.operator_stiffness[element],
+                    gravity: 0.0,
+                    moving: plan.mode != Mode::StepAndPause,
+                    mobility: ends.map(floor).sum(),
+                    time_step,
+                    noise: noise_of(&start.resolved[element]),
+                };
+                (
+                    format!("element {}", element + 1),
+                    Stiffer::new(judged, (read.deformation, read.force)),
+                )
+            };
+            return Self::of((0..start.elements.len()).map(judged).collect());
+        }
         let storeys = storeys_of(&properties.operator).unwrap_or_default();
         let weights = matrices.gravity.as_ref().and_then(storeys_of);
         let gravity = |storey: usize| weights.as_ref().map_or(0.0, |weights| weights[storey]);
@@ -260,7 +282,6 @@ impl StifferSprings {
         let (mut drift, mut shear) = (nothing(), nothing());
         drifts(&first.displacement, &mut drift);
         shears(&first.force, &mut shear);
-        let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
         let judged = |(storey, operator_stiffness): (usize, f64)| {
             let judged = Judged {
                 integrator: plan.integrator,
@@ -279,9 +300,22 @@ impl StifferSprings {
         Self::of(storeys.into_iter().enumerate().map(judged).collect())
     }
 
-    pub(crate) fn take(&mut self, reading: &Reading, struck: bool, session: &mut Session<'_>) {
-        drifts(&reading.displacement, &mut self.drift);
-        shears(&reading.force, &mut self.shear);
+    pub(crate) fn take(
+        &mut self,
+        reading: &Reading,
+        elements: &[ElementReading],
+        struck: bool,
+        session: &mut Session<'_>,
+    ) {
+        if elements.is_empty() {
+            drifts(&reading.displacement, &mut self.drift);
+            shears(&reading.force, &mut self.shear);
+        } else {
+            let read = self.drift.iter_mut().zip(&mut self.shear).zip(elements);
+            for ((drift, shear), element) in read {
+                (*drift, *shear) = (element.deformation, element.force);
+            }
+        }
         let readings = self.drift.iter().copied().zip(self.shear.iter().copied());
         for ((name, storey), reading) in self.springs.iter_mut().zip(readings) {
             storey.take(reading, struck, name, session);

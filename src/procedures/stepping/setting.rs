@@ -9,9 +9,10 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::Damping;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::StoreyReadings;
-use psd_physics::structure::{Damping, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::schema::{frames, methods};
 use psd_plan::{
@@ -100,11 +101,12 @@ impl FrameSteps {
         inputs: &mut Inputs<'_>,
     ) -> Result<Self, Stop> {
         let steps = Steps::evaluate(plan, times, properties.matrices.order(), inputs)?;
-        let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) if plan.integrator == Integrator::Tangent => Tangents::Storeys {
+        let tangents = if properties.has_tangents() && plan.integrator == Integrator::Tangent {
+            Tangents::Storeys {
                 largest_ratio: steps.max_tangent_ratio,
-            },
-            _ => Tangents::Initial,
+            }
+        } else {
+            Tangents::Initial
         };
         Ok(Self {
             properties,
@@ -125,8 +127,10 @@ pub(crate) struct Start {
     pub commanded: Vec<f64>,
     /// One reading there: it contains R₀.
     pub reading: Reading,
-    /// Of each storey.
+    /// Of each storey or element.
     pub readings: Vec<StoreyReadings>,
+    /// Those of a frame of matrices there.
+    pub elements: Vec<ElementReading>,
     /// The same with the resolution of the forces as a part of their noise.
     pub resolved: Vec<StoreyReadings>,
 }
@@ -139,8 +143,13 @@ impl Start {
         plan: &Stepping,
         load: &'a [f64],
     ) -> FrameInput<'a> {
-        let matrices = &frame.properties.matrices;
+        let FrameProperties {
+            matrices, elements, ..
+        } = &frame.properties;
         FrameInput {
+            elements: elements
+                .as_ref()
+                .map(|elements| (elements, self.elements.as_slice())),
             matrices,
             operator_stiffness: &frame.properties.operator,
             integrator: plan.integrator,

@@ -10,11 +10,12 @@
 use super::continuous_motion::{ContinuousMotion, Waypoint};
 use super::operator_stability_watch::StifferSprings;
 use super::setting::{Start, Steps};
-use super::tracking::{Monitors, TrackingSummary};
+use super::tracking::{At, Monitors, TrackingSummary};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{AxisReport, Keep, StepReport};
 use psd_physics::integrator::state::State;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::matrix::Vector;
 use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::Tracking;
@@ -45,6 +46,9 @@ pub(crate) trait Stepped {
 
     /// Sets the effective forces of the recursion at the targets of the last step \[N\].
     fn effective_force(&self, force: &mut [f64]);
+
+    /// The elements of a frame of matrices at the targets of the step in progress.
+    fn read_elements(&mut self, elements: &[ElementReading]);
 
     /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
@@ -84,14 +88,19 @@ pub(crate) fn run<S: Stepped>(
         commanded,
         reading,
         readings: session.storey_readings(),
+        elements: session.elements_read(),
         resolved: session.resolved_storey_readings(),
     };
     let (mut stepped, stiffer) = begin(&start)?;
     let monitors = Monitors::new(
         session.assemblies().cloned(),
-        &start.commanded,
-        &start.reading,
-        &stepped.effective_force_at_start(&start),
+        plan.i_modification,
+        &At {
+            commanded: &start.commanded,
+            reading: &start.reading,
+            elements: &start.elements,
+            effective_force: &stepped.effective_force_at_start(&start),
+        },
     );
     let motion = match plan.mode {
         Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
@@ -131,6 +140,7 @@ pub(crate) fn run<S: Stepped>(
         stepped.keep(monitors.tracking(), wall_time);
     }
     if is_cut_off {
+        stepped.read_elements(&session.elements_read());
         stepped.cut_off(&target, &reading, steps.time_step, session.guard.time());
     }
     ended
@@ -181,7 +191,7 @@ impl<S: Stepped> StepsTaken<S> {
                 ..
             } = self;
             let (before, now) = (struck, stepped.is_struck());
-            stiffer.take(reading, before || now, session);
+            stiffer.take(reading, &session.elements_read(), before || now, session);
             struck = now;
             let (tracking, tracking_energy_error) =
                 followed.assess(monitors.tracking(), input, session);
@@ -254,9 +264,16 @@ impl<S: Stepped> StepsTaken<S> {
             reading,
             ..
         } = self;
+        let elements = session.elements_read();
+        stepped.read_elements(&elements);
         stepped.complete(reading);
         stepped.effective_force(effective_force);
-        monitors.take(stepped.axes().target, reading, effective_force);
+        monitors.take(&At {
+            commanded: stepped.axes().target,
+            reading,
+            elements: &elements,
+            effective_force,
+        });
         let balance = stepped.sum_up();
         self.wall_time = session.guard.time();
         if self.keeps_steps {

@@ -4,6 +4,7 @@
 
 use crate::procedures::facts::Delay;
 use crate::run::session::Session;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
@@ -15,37 +16,43 @@ use psd_plan::{Frame, Link, Mode, Plan, ShakeDamping, Stepping, VirtualLink};
 use psd_rig::Reading;
 use psd_text::units::display::significant;
 
-/// A tracking monitor for every floor, with the motion and force of its axis; a computed storey has no tracking error.
+/// A tracking monitor for every floor or element, with the motion and force of its axis; a computed one has no tracking error.
 pub(crate) struct Monitors {
     axes: Vec<Monitor>,
     /// None if the axes are the floors.
     assemblies: Option<Assemblies>,
+    /// Whether the recursion uses the force at the target of an element.
+    i_modification: bool,
     /// Of each axis so far.
     tracking: Vec<Tracking>,
 }
 
+/// The floors at the end of a step.
+pub(crate) struct At<'a> {
+    pub commanded: &'a [f64],
+    pub reading: &'a Reading,
+    /// Those of a frame of matrices.
+    pub elements: &'a [ElementReading],
+    /// Effective forces of the recursion at the commanded displacements \[N\].
+    pub effective_force: &'a [f64],
+}
+
 impl Monitors {
-    /// `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
+    /// From the start of a run.
     pub(crate) fn new(
         assemblies: Option<Assemblies>,
-        commanded: &[f64],
-        reading: &Reading,
-        effective_force: &[f64],
+        i_modification: bool,
+        start: &At<'_>,
     ) -> Self {
         let mut axes = Vec::new();
-        each_tracked(
-            assemblies.as_ref(),
-            commanded,
-            reading,
-            effective_force,
-            |step| {
-                axes.push(Monitor::new(step));
-            },
-        );
+        each_tracked(assemblies.as_ref(), i_modification, start, |step| {
+            axes.push(Monitor::new(step));
+        });
         Self {
             tracking: axes.iter().map(Monitor::tracking).collect(),
             axes,
             assemblies,
+            i_modification,
         }
     }
 
@@ -54,11 +61,11 @@ impl Monitors {
         &self.tracking
     }
 
-    /// Adds a step; `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
-    pub(crate) fn take(&mut self, commanded: &[f64], reading: &Reading, effective_force: &[f64]) {
+    /// Adds a step.
+    pub(crate) fn take(&mut self, at: &At<'_>) {
         let mut axes = self.axes.iter_mut().zip(&mut self.tracking);
         let assemblies = self.assemblies.as_ref();
-        each_tracked(assemblies, commanded, reading, effective_force, |step| {
+        each_tracked(assemblies, self.i_modification, at, |step| {
             if let Some((monitor, tracking)) = axes.next() {
                 *tracking = monitor.take(step);
             }
@@ -66,18 +73,47 @@ impl Monitors {
     }
 }
 
-/// Calls with the step of the axis of each floor, from commands, readings and forces of the floors.
+/// Calls with the step of the axis of each floor, from commands, readings and forces of the floors; for a frame of matrices, with that of
+/// each element.
 fn each_tracked(
     assemblies: Option<&Assemblies>,
-    commanded: &[f64],
-    reading: &Reading,
-    effective_force: &[f64],
+    i_modification: bool,
+    at: &At<'_>,
     mut take: impl FnMut(&TrackedStep),
 ) {
+    let At {
+        commanded,
+        reading,
+        elements,
+        effective_force,
+    } = *at;
     let Some(assemblies) = assemblies else {
         tracked(commanded, reading, effective_force).for_each(|step| take(&step));
         return;
     };
+    if let Some(layout) = assemblies.elements() {
+        let computed = assemblies.computed();
+        for (element, (read, stiffness)) in elements.iter().zip(&layout.stiffness).enumerate() {
+            let read = if computed.contains(&element) {
+                ElementReading::default()
+            } else {
+                *read
+            };
+            let missed = read.deformation - read.target;
+            let correction = if i_modification {
+                stiffness * missed
+            } else {
+                0.0
+            };
+            take(&TrackedStep {
+                commanded: read.target,
+                measured: read.deformation,
+                force: read.force,
+                effective_force: read.force - correction,
+            });
+        }
+        return;
+    }
     let of_axes = Reading {
         time: reading.time,
         displacement: assemblies.in_assemblies(&reading.displacement),

@@ -17,6 +17,7 @@ pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     }
     Facts {
         tests: Tests::Frame,
+        unloads_storeys: true,
         figures: figures::UNLOADING_FIGURES,
         headline: vec![schema::RESIDUAL_DRIFT.name],
         ..shared

@@ -8,7 +8,7 @@ use psd_plan::named_axis;
 use psd_plan::record::ProcedureRecord;
 use psd_plan::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
 use psd_plan::uncertainty::{Contribution, Source};
-use psd_plan::{BelowRange, Plan, ShakeDamping, Specimen, Storey, Striker};
+use psd_plan::{BelowRange, Element, Frame, Plan, ShakeDamping, Specimen, Storey, Striker};
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 
@@ -119,6 +119,14 @@ impl Input {
                 let name = format!("{specimen_name}.storeys[{storey}].stiffness");
                 let found = storey_of(plan, specimen, storey).map(read);
                 Self::of_storey(name, found, Dimension::STIFFNESS)
+            }
+            Source::ElementStiffness { specimen, element } => {
+                let read = |element: &Element| (element.stiffness, element.stiffness_uncertainty);
+                let specimen_name = specimen_name(plan, specimen);
+                let name = format!("{specimen_name}.elements[{element}].stiffness");
+                let frame = frame_of(plan, specimen);
+                let found = frame.and_then(|frame| frame.elements.get(element));
+                Self::of_storey(name, found.map(read), Dimension::STIFFNESS)
             }
             Source::DampingRatio { procedure, mode } => Self::damping_ratio(run, procedure, mode),
             Source::GroundScale(index) => {
@@ -332,6 +340,9 @@ fn specimen_name(plan: &Plan, specimen: usize) -> &str {
 }
 
 fn storey_of(plan: &Plan, specimen: usize, storey: usize) -> Option<&Storey> {
-    let frame = plan.specimens.get(specimen)?.frame.as_ref()?;
-    frame.storeys.get(storey)
+    frame_of(plan, specimen)?.storeys.get(storey)
+}
+
+fn frame_of(plan: &Plan, specimen: usize) -> Option<&Frame> {
+    plan.specimens.get(specimen)?.frame.as_ref()
 }

@@ -233,6 +233,7 @@ wording! {
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
             "Largest tracking-error energy / input (− added)", "Tracking indicator at the end"];
+        OF_ELEMENT = "Actuator of element";
         LARGEST_IN_PROTOTYPE = "Largest error, in the prototype";
     }
 

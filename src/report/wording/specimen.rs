@@ -7,11 +7,11 @@ use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
 use psd_physics::structure::substructures::{Assemblies, on_the_rig};
-use psd_plan::scaled::{at_scale, numbers_on_the_rig, storeys};
+use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{
     Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Part,
-    Pinching, Portal, Sections, Unloading,
+    Pinching, Portal, Scale, Sections, Unloading,
 };
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
@@ -49,7 +49,9 @@ pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, Str
 pub fn substructures(frame: &Frame) -> Option<String> {
     let assemblies = Assemblies::of(frame)?;
     let specimens = assemblies.specimens();
-    let scale = |specimen: &[usize]| at_scale(&frame.storeys[specimen[0]].part.scale());
+    let scales: Vec<Scale> = frame.members().map(|member| member.part.scale()).collect();
+    let scale = |specimen: &[usize]| at_scale(&scales[specimen[0]]);
+    let storeys = |of: &[usize]| members(frame, of);
     let tested = match &specimens[..] {
         [] => "nothing is tested".to_owned(),
         [one] => format!("{} tested{}", storeys(one), scale(one)),
@@ -62,10 +64,13 @@ pub fn substructures(frame: &Frame) -> Option<String> {
         }
     };
     let computed = assemblies.computed();
+    let matrix = (!frame.elements.is_empty()).then(|| "the stiffness matrix".to_owned());
+    let computed = (!computed.is_empty()).then(|| storeys(&computed));
+    let computed: Vec<String> = matrix.into_iter().chain(computed).collect();
     Some(if computed.is_empty() {
         tested
     } else {
-        format!("{tested}; {} computed", storeys(&computed))
+        format!("{tested}; {} computed", computed.join(" and "))
     })
 }
 
@@ -81,12 +86,12 @@ pub struct DrawnStorey {
     pub stiffness: String,
 }
 
-/// The storeys of a frame of which a part is computed, or a specimen has a scale, from the ground up.
+/// The storeys of a frame of which a part is computed, or a specimen has a scale, from the ground up; or its elements.
 #[must_use]
 pub fn drawn_storeys(frame: &Frame) -> Vec<DrawnStorey> {
     let stiffness = |value| stated(value, Dimension::STIFFNESS);
     let mut tested = on_the_rig(frame).zip(1..);
-    let storeys = frame.storeys.iter().zip(1..);
+    let storeys = frame.members().zip(1..);
     let drawn = storeys.map(|(storey, number)| {
         let own = stiffness(storey.stiffness);
         let Part::Tested { scale, .. } = storey.part else {
@@ -141,24 +146,42 @@ pub fn measured(what: &str, frame: Option<&Frame>) -> String {
 /// The assumptions of a test of which a part is computed, or a specimen has a scale.
 #[must_use]
 pub fn assumed(frame: &Frame) -> String {
-    let has = |is: fn(&Part) -> bool| frame.storeys.iter().any(|storey| is(&storey.part));
+    let has = |is: fn(&Part) -> bool| frame.members().any(|member| is(&member.part));
+    let word = frame.word_for_a_member();
+    let interface = if frame.elements.is_empty() {
+        "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen."
+    } else {
+        "An element transmits one force alone: no rotation and no moment is imposed on a specimen. The stiffness matrix is computed: it is stated and was not measured."
+    };
     let assumed = [
-        (true, SHEAR_ALONE),
-        (has(|part| *part == Part::Computed), MODELS_STATED),
-        (has(|part| part.scale().force != 1.0), STRESSES_ALIKE),
-        (has(|part| part.scale().represents > 1.0), PARTS_MOVE_ALIKE),
+        (true, interface.to_owned()),
+        (
+            has(|part| *part == Part::Computed),
+            format!("The models of computed {word}s are stated and were not measured."),
+        ),
+        (
+            has(|part| part.scale().force != 1.0),
+            format!(
+                "A specimen at a scale behaves as its {word}: forces and displacements differ by the stated factors alone."
+            ),
+        ),
+        (
+            has(|part| part.scale().represents > 1.0),
+            format!(
+                "The equal parts of {} {word} behave alike: one of them is on the rig.",
+                article(word)
+            ),
+        ),
     ];
     let sentences = assumed.into_iter().filter(|(holds, _)| *holds);
-    let sentences: Vec<&str> = sentences.map(|(_, sentence)| sentence).collect();
+    let sentences: Vec<String> = sentences.map(|(_, sentence)| sentence).collect();
     sentences.join(" ")
 }
 
-const SHEAR_ALONE: &str =
-    "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen.";
-const MODELS_STATED: &str = "The models of computed storeys are stated and were not measured.";
-const STRESSES_ALIKE: &str = "A specimen at a scale behaves as its storey: forces and displacements differ by the stated factors alone.";
-const PARTS_MOVE_ALIKE: &str =
-    "The equal parts of a storey behave alike: one of them is on the rig.";
+/// `a storey`, `an element`.
+fn article(word: &str) -> &'static str {
+    if word.starts_with('e') { "an" } else { "a" }
+}
 
 /// The numbers of the report of a test of which a specimen has a scale. None for any other test.
 #[must_use]

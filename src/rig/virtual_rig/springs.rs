@@ -7,7 +7,7 @@ use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
 use psd_physics::structure::SymmetricBand;
 use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
 use psd_physics::structure::substructures::on_the_rig;
-use psd_plan::{Behaviour, Frame, Specimen};
+use psd_plan::{Behaviour, Frame, Member, Specimen};
 
 /// Springs between the axes and the ground.
 pub(super) enum Springs {
@@ -66,7 +66,7 @@ impl Springs {
     }
 
     pub(super) fn of_frame(frame: &Frame) -> Self {
-        if frame.storeys.is_empty() {
+        if frame.is_matrix_on_the_rig() {
             let order = frame.degrees_of_freedom();
             let stiffness = SymmetricBand::from_dense(&frame.stiffness)
                 .unwrap_or_else(|_| SymmetricBand::zero(order, 0));
@@ -77,10 +77,10 @@ impl Springs {
                 .collect();
             return Self::Matrix { stiffness, rows };
         }
-        let storey = |(storey, stands): (&psd_plan::Storey, bool)| {
+        let storey = |(storey, stands): (Member<'_>, bool)| {
             let damper = CellDamping::new(storey.damping, storey.coulomb);
             let stiffness = storey.part.scale().stiffness_on_the_rig(storey.stiffness);
-            Storey::new(&storey.behaviour, stiffness, damper, stands)
+            Storey::new(storey.behaviour, stiffness, damper, stands)
         };
         Self::Storeys(on_the_rig(frame).map(storey).collect())
     }

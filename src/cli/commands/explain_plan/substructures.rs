@@ -1,11 +1,14 @@
 //! The structure of a hybrid test, drawn: floors from the highest down, storeys that are tested or computed, axes, scales. In: a frame. Out:
 //! rows of text.
 
-use psd::report::wording::specimen::drawn_storeys;
-use psd_plan::Frame;
+use psd::report::wording::specimen::{DrawnStorey, drawn_storeys};
+use psd_plan::{Element, Frame};
 
 /// A row for each floor with its axis, and one for each storey below it: `║` is on the rig, `┆` is computed.
 pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
+    if !frame.elements.is_empty() {
+        return elements(frame);
+    }
     let storeys = drawn_storeys(frame).into_iter().map(|drawn| {
         let (column, mover) = match drawn.axis {
             None => ("┆", String::new()),
@@ -28,6 +31,26 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
     rows.reverse();
     rows.push(vec!["ground".to_owned(), "──┴──".to_owned()]);
     rows
+}
+
+/// A row for each element of a frame of matrices.
+fn elements(frame: &Frame) -> Vec<Vec<String>> {
+    let elements = frame.elements.iter().zip(drawn_storeys(frame));
+    let row = |(element, drawn): (&Element, DrawnStorey)| {
+        let end = |end: Option<usize>| end.map_or("ground".to_owned(), |end| (end + 1).to_string());
+        let [from, to] = element.ends.map(end);
+        let (column, mover) = match drawn.axis {
+            None => ("┄┄", String::new()),
+            Some(axis) => ("══", format!("◄─ axis {axis}")),
+        };
+        vec![
+            format!("element {}", drawn.number),
+            format!("{from} {column} {to}"),
+            mover,
+            format!("{}, {}", drawn.part, drawn.stiffness),
+        ]
+    };
+    elements.map(row).collect()
 }
 
 #[cfg(test)]

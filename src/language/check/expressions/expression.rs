@@ -607,7 +607,15 @@ impl<'a> Checker<'a> {
             return None;
         }
         let specimen = self.tested(block)?;
-        frame::frame(self, specimen).map(|frame| frame.degrees_of_freedom())
+        let frame = frame::frame(self, specimen)?;
+        let of_axes = schema::procedures::tracking::OF_EACH_AXIS
+            .iter()
+            .any(|list| list.name == reference.name);
+        Some(if of_axes && !frame.elements.is_empty() {
+            frame.elements.len()
+        } else {
+            frame.degrees_of_freedom()
+        })
     }
 
     /// Folds a number that is known before the run into a constant; one that is not finite is an error.

@@ -86,15 +86,17 @@ fn axis<'a>(
     );
     let (actuator, load_cell) = (actuator?, load_cell?);
     let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
-    let storey = checker.optional_argument(chosen, schema::AXIS_STOREY, context);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a count from 1 to 64"
     )]
-    let storey = storey?.map(|storey: f64| storey as usize - 1);
+    let index = |number: f64| number as usize - 1;
+    let [storey, element] = [schema::AXIS_STOREY, schema::AXIS_ELEMENT]
+        .map(|named| checker.optional_argument(chosen, named, context));
     let plan = AxisPlan {
-        storey,
+        storey: storey?.map(index),
+        element: element?.map(index),
         polarity: polarity?,
         pretest_check: pretest_check?,
         displacement: displacement?,
@@ -211,6 +213,7 @@ struct AnotherNumberOfAxes<'a> {
     axes: usize,
     specimen: &'a str,
     storeys: usize,
+    word: &'static str,
     is_hybrid: bool,
     at: Span,
 }
@@ -224,18 +227,29 @@ impl Violation for AnotherNumberOfAxes<'_> {
             axes,
             specimen,
             storeys,
+            word,
             is_hybrid,
             at,
         } = self;
         let needs = match storeys {
-            _ if is_hybrid => format!("the frame `{specimen}` has {} tested", storeys_of(storeys)),
+            _ if is_hybrid => {
+                format!(
+                    "the frame `{specimen}` has {} tested",
+                    members_of(word, storeys)
+                )
+            }
             1 => format!("`{specimen}` has one degree of freedom"),
             _ => format!("the frame `{specimen}` has {storeys} storeys"),
         };
         let help = match storeys {
             1 => "remove `axes`: a rig without it has one axis".to_owned(),
             _ => format!(
-                "list {storeys} axes, the lowest storey first: axes = [{}]",
+                "list {storeys} axes, {}: axes = [{}]",
+                if word == "storey" {
+                    "the lowest storey first"
+                } else {
+                    "in the order of the elements"
+                },
                 vec!["axis"; storeys].join(", ")
             ),
         };
@@ -272,6 +286,10 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
             axes,
             specimen: &specimen.name,
             storeys,
+            word: specimen
+                .frame
+                .as_ref()
+                .map_or("storey", Frame::word_for_a_member),
             is_hybrid: specimen.frame.as_ref().and_then(Assemblies::of).is_some(),
             at: written.value.span,
         });
@@ -284,74 +302,115 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
             }
             _ => written.value.span,
         };
-        check_storeys(checker, frame, &link.axes, &at);
+        check_members(checker, frame, &link.axes, &at);
     }
 }
 
 #[derive(Violation)]
-#[violation(E615, "axis {axis} moves storey {storey}, which is not on the rig")]
+#[violation(E615, "axis {axis} moves {word} {member}, which is not on the rig")]
 #[help("{}", help)]
-struct AxisWithoutStorey {
+struct AxisWithoutMember {
     axis: usize,
-    storey: usize,
+    word: &'static str,
+    member: usize,
     #[label("{}", label)]
     at: Span,
-    label: &'static str,
+    label: String,
     help: String,
 }
 
 #[derive(Violation)]
-#[violation(E615, "storey {storey} is tested, but no axis moves it")]
-#[help("list the axes from the ground up, one for each tested storey: `axis(storey: {storey})`")]
-struct StoreyWithoutAxis {
-    storey: usize,
-    #[label("this axis moves storey {moves}")]
+#[violation(E615, "{word} {member} is tested, but no axis moves it")]
+#[help("list the axes {order}, one for each tested {word}: `axis({word}: {member})`")]
+struct MemberWithoutAxis {
+    word: &'static str,
+    member: usize,
+    order: &'static str,
+    #[label("this axis moves {word} {moves}")]
     at: Span,
     moves: usize,
 }
 
-/// The storeys that axes name are the tested storeys, from the ground up.
-fn check_storeys(
+#[derive(Violation)]
+#[violation(E615, "axis {axis} names a {named}, but the frame has {word}s")]
+#[help("write `axis({word}: 1)`, with the number of a tested {word}")]
+struct AxisOfAnotherFrame {
+    axis: usize,
+    named: &'static str,
+    word: &'static str,
+    #[label("of another frame")]
+    at: Span,
+}
+
+/// The storeys or elements that axes name are the tested ones, in their order.
+fn check_members(
     checker: &mut Checker,
     frame: &Frame,
     axes: &[AxisPlan],
     at: &dyn Fn(usize) -> Span,
 ) {
-    let storeys = frame.degrees_of_freedom();
-    let is_tested = |storey: usize| match frame.storeys.get(storey) {
-        Some(storey) => storey.part != Part::Computed,
-        None => storey < storeys,
+    let has_elements = !frame.elements.is_empty();
+    let word = frame.word_for_a_member();
+    let parts: Vec<Part> = if frame.is_matrix_on_the_rig() {
+        vec![Part::TESTED; frame.degrees_of_freedom()]
+    } else {
+        frame.members().map(|member| member.part).collect()
     };
-    let tested: Vec<usize> = (0..storeys).filter(|storey| is_tested(*storey)).collect();
-    let named = axes.iter().enumerate();
-    let named: Vec<(usize, usize)> = named
-        .filter_map(|(axis, plan)| Some((axis, plan.storey?)))
+    let is_tested = |member: usize| {
+        parts
+            .get(member)
+            .is_some_and(|part| *part != Part::Computed)
+    };
+    let tested: Vec<usize> = (0..parts.len())
+        .filter(|member| is_tested(*member))
         .collect();
-    for (axis, storey) in named {
-        if !is_tested(storey) {
-            let known = tested.iter().map(|storey| (storey + 1).to_string());
-            let (label, help) = if storey < storeys {
+    for (axis, plan) in axes.iter().enumerate() {
+        let (own, other) = if has_elements {
+            (plan.element, plan.storey)
+        } else {
+            (plan.storey, plan.element)
+        };
+        if other.is_some() {
+            checker.report(AxisOfAnotherFrame {
+                axis: axis + 1,
+                named: if has_elements { "storey" } else { "element" },
+                word,
+                at: at(axis),
+            });
+            return;
+        }
+        let Some(member) = own else { continue };
+        if !is_tested(member) {
+            let known = tested.iter().map(|member| (member + 1).to_string());
+            let (label, help) = if member < parts.len() {
                 (
-                    "the storey is computed",
-                    "write `part: tested` in the storey, or name a tested one: ",
+                    format!("the {word} is computed"),
+                    format!("write `part: tested` in the {word}, or name a tested one: "),
                 )
             } else {
-                ("no such storey", "name a tested storey: ")
+                (format!("no such {word}"), format!("name a tested {word}: "))
             };
-            checker.report(AxisWithoutStorey {
+            checker.report(AxisWithoutMember {
                 axis: axis + 1,
-                storey: storey + 1,
+                word,
+                member: member + 1,
                 at: at(axis),
                 label,
                 help: format!("{help}{}", known.collect::<Vec<String>>().join(", ")),
             });
             return;
         }
-        if tested[axis] != storey {
-            checker.report(StoreyWithoutAxis {
-                storey: tested[axis] + 1,
+        if tested[axis] != member {
+            checker.report(MemberWithoutAxis {
+                word,
+                member: tested[axis] + 1,
+                order: if has_elements {
+                    "in the order of the elements"
+                } else {
+                    "from the ground up"
+                },
                 at: at(axis),
-                moves: storey + 1,
+                moves: member + 1,
             });
             return;
         }
@@ -359,10 +418,10 @@ fn check_storeys(
 }
 
 /// `one storey`, or `3 storeys`.
-fn storeys_of(count: usize) -> String {
+fn members_of(word: &str, count: usize) -> String {
     if count == 1 {
-        "one storey".to_owned()
+        format!("one {word}")
     } else {
-        format!("{count} storeys")
+        format!("{count} {word}s")
     }
 }

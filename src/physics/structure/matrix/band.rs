@@ -139,6 +139,13 @@ impl SymmetricBand {
         self.entries[index] = value;
     }
 
+    /// Makes the band at least this wide, if it is narrower.
+    pub(crate) fn include(&mut self, half_bandwidth: usize) {
+        if half_bandwidth > self.half_bandwidth {
+            self.widen(half_bandwidth);
+        }
+    }
+
     /// Makes the band at least this wide.
     fn widen(&mut self, half_bandwidth: usize) {
         let mut wide = Self::zero(self.order, half_bandwidth);
@@ -149,9 +156,7 @@ impl SymmetricBand {
     /// Adds `factor` times the other matrix of the same order.
     pub fn add(&mut self, other: &Self, factor: f64) {
         assert_eq!(self.order, other.order, "matrices of one frame");
-        if other.half_bandwidth > self.half_bandwidth {
-            self.widen(other.half_bandwidth);
-        }
+        self.include(other.half_bandwidth);
         for (entry, more) in self.entries.iter_mut().zip(&other.entries) {
             *entry += factor * more;
         }

@@ -31,6 +31,7 @@ impl Floors for UnloadStep {
             acceleration: &[],
             restoring_force: &self.restoring_force,
             gravity_force: &[],
+            elements: &[],
             tracking: &[],
         }
     }

@@ -4,6 +4,7 @@
 use crate::record::Modes;
 use psd_physics::integrator::state::State;
 use psd_physics::integrator::tangents::HasTangents;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::{drifts, shears};
 use psd_physics::tracking::monitor::Tracking;
 
@@ -26,7 +27,9 @@ pub struct FloorsAt<'a> {
     pub restoring_force: &'a [f64],
     /// G X at the targets \[N\]; empty without weights.
     pub gravity_force: &'a [f64],
-    /// The tracking error of each floor.
+    /// The elements of a frame of matrices; none for any other frame.
+    pub elements: &'a [ElementReading],
+    /// The tracking error of each floor, or of each element.
     pub tracking: &'a [Tracking],
 }
 
@@ -60,7 +63,12 @@ pub trait Floors {
         self.at().measured
     }
 
-    /// The tracking error of each floor.
+    /// The elements of a frame of matrices.
+    fn elements(&self) -> &[ElementReading] {
+        self.at().elements
+    }
+
+    /// The tracking error of each floor, or of each element.
     fn tracking(&self) -> &[Tracking] {
         self.at().tracking
     }
@@ -147,6 +155,8 @@ pub struct FloorMotion {
     pub restoring_force: Vec<f64>,
     /// G X at the targets, of each floor \[N\]; empty without weights.
     pub gravity_force: Vec<f64>,
+    /// The elements of a frame of matrices.
+    pub elements: Vec<ElementReading>,
     /// For each axis.
     pub tracking: Vec<Tracking>,
 }
@@ -164,12 +174,13 @@ impl FloorMotion {
             acceleration: of(&state.acceleration),
             restoring_force: of(&state.restoring_force),
             gravity_force: of(&state.gravity_force),
+            elements: state.elements.clone(),
             tracking: tracking.to_vec(),
         }
     }
 
     /// The floors where a limit ended the motion to these targets \[m\], after this step, by this time \[s\]: displacement \[m\] and
-    /// force \[N\] as measured, and G X there \[N\].
+    /// force \[N\] as measured, G X there \[N\], and the elements.
     pub fn cut_off(
         &self,
         time: f64,
@@ -177,6 +188,7 @@ impl FloorMotion {
         displacement: &[f64],
         restoring_force: &[f64],
         gravity_force: Vec<f64>,
+        elements: &[ElementReading],
     ) -> Self {
         Self {
             time,
@@ -185,6 +197,7 @@ impl FloorMotion {
             computed: displacement.to_vec(),
             restoring_force: restoring_force.to_vec(),
             gravity_force,
+            elements: elements.to_vec(),
             ..self.clone()
         }
     }
@@ -201,6 +214,7 @@ impl Floors for FloorMotion {
             acceleration: &self.acceleration,
             restoring_force: &self.restoring_force,
             gravity_force: &self.gravity_force,
+            elements: &self.elements,
             tracking: &self.tracking,
         }
     }

@@ -27,6 +27,12 @@ pub mod storey {
     pub const REPRESENTS: &str = "represents";
 }
 
+/// The names of the arguments of an element that a storey does not have.
+pub mod element {
+    pub const FROM: &str = "from";
+    pub const TO: &str = "to";
+}
+
 /// Smallest scale of a specimen; the largest is its inverse.
 const SMALLEST_SCALE: f64 = 0.01;
 
@@ -163,6 +169,74 @@ pub const STOREYS: Field = Field::choices(
     STOREY,
     "storeys from the ground up, instead of `mass` and `behaviour`",
 );
+
+const ELEMENT: &[Variant] = &[Variant::with(
+    "element",
+    &[
+        Field::count(
+            element::FROM,
+            0.0,
+            MOST_DEGREES,
+            "degree of freedom at its first end; 0 is the ground",
+        )
+        .required("from: 0"),
+        Field::count(
+            element::TO,
+            0.0,
+            MOST_DEGREES,
+            "degree of freedom at its second end; its deformation is the displacement there less that at `from`",
+        )
+        .required("to: 1"),
+        Field {
+            example: "stiffness: 3 MN/m",
+            ..STIFFNESS.default_in_words("from the behaviour")
+        },
+        Field::quantity(
+            storey::STIFFNESS_UNCERTAINTY,
+            Dimension::STIFFNESS,
+            "standard uncertainty of the stiffness of the element",
+        )
+        .or(0.0, "N/m")
+        .at_least_zero(),
+        Field::choice(
+            storey::BEHAVIOUR,
+            BEHAVIOURS,
+            "restoring-force model of a virtual rig or of a computed element: force against deformation; in numbers of the rig if it is tested",
+        )
+        .default_in_words("elastic with `stiffness`"),
+        Field::quantity(
+            storey::DAMPING,
+            Dimension::DAMPING,
+            "viscous damping, c times velocity, in the force of a virtual rig",
+        )
+        .or(0.0, "N*s/m")
+        .at_least_zero(),
+        Field::quantity(
+            storey::COULOMB,
+            Dimension::FORCE,
+            "friction against the motion, in the force of a virtual rig",
+        )
+        .or(0.0, "N")
+        .at_least_zero(),
+        Field::choice(
+            storey::PART,
+            PARTS,
+            "substructure that gives the force of the element",
+        )
+        .default_in_words("tested"),
+    ],
+    "force between two degrees of freedom",
+)];
+
+/// Degrees of freedom of a frame, at most.
+const MOST_DEGREES: f64 = 64.0;
+
+pub const ELEMENTS: Field = Field::choices(
+    "elements",
+    ELEMENT,
+    "elements beside the matrices, tested or computed; `stiffness_matrix` is then computed",
+)
+.advanced();
 
 pub const MASS_MATRIX: Field = Field::text(
     "mass_matrix",

@@ -3,7 +3,8 @@
 
 use super::behaviours::BEHAVIOURS;
 pub use super::frames::{
-    MASS_MATRIX, MASS_MATRIX_UNCERTAINTY, STIFFNESS_MATRIX, STIFFNESS_MATRIX_UNCERTAINTY, STOREYS,
+    ELEMENTS, MASS_MATRIX, MASS_MATRIX_UNCERTAINTY, STIFFNESS_MATRIX, STIFFNESS_MATRIX_UNCERTAINTY,
+    STOREYS,
 };
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
 use psd_text::units::Dimension;
@@ -78,6 +79,7 @@ pub const SPECIMEN: BlockKind = BlockKind {
         STOREYS,
         MASS_MATRIX,
         STIFFNESS_MATRIX,
+        ELEMENTS,
         MASS_MATRIX_UNCERTAINTY,
         STIFFNESS_MATRIX_UNCERTAINTY,
     ],

@@ -53,10 +53,7 @@ pub(crate) fn chart(
         ),
         FigureKind::Hysteresis => (
             shake::figures::charts::hysteresis(&frame.floors),
-            format!(
-                "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
-                shake::figures::storey_shear(run)
-            ),
+            shake::figures::loops(run, name, chosen),
         ),
         FigureKind::BaseShear => (
             shaded(
@@ -107,7 +104,7 @@ pub(crate) fn chart(
         ),
         FigureKind::Tracking => (
             shaded(history, shake::figures::charts::tracking(&frame.floors)),
-            shake::figures::followed(name, chosen),
+            shake::figures::followed(run, name, chosen),
         ),
         _ => return None,
     })

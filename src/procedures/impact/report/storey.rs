@@ -60,6 +60,7 @@ pub(crate) fn report(
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
+    body.extend(shake::report::element_table(&struck.floors));
     body.extend(shake::report::noise_note(run));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure, frame));

@@ -44,8 +44,27 @@ pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
     chart
 }
 
-/// Storey shear against storey drift: the area of a loop is the absorbed energy.
+/// Storey shear against storey drift: the area of a loop is the absorbed energy. Elements of a frame of matrices: force against deformation.
 pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
+    if has_elements(steps) {
+        let curves = each(steps, |step| {
+            let elements = step.elements().iter();
+            elements
+                .map(|read| (read.deformation, read.force))
+                .collect()
+        });
+        let curves = curves.into_iter().enumerate();
+        let curves = curves.map(|(curve, (element, points))| Series {
+            label: format!("element {}", element + 1),
+            points,
+            style: retraced(curve),
+        });
+        return Chart::of(
+            Quantity::along("Deformation", Dimension::LENGTH),
+            Quantity::of("Force", Dimension::FORCE),
+            curves.collect(),
+        );
+    }
     let curves = each(steps, |step| {
         step.drift().into_iter().zip(step.shear()).collect()
     });
@@ -62,6 +81,13 @@ pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
         Quantity::of("Storey shear", Dimension::FORCE),
         curves.collect(),
     )
+}
+
+/// Whether the steps are those of a frame of matrices with elements.
+fn has_elements<S: Floors>(steps: &[S]) -> bool {
+    steps
+        .first()
+        .is_some_and(|step| !step.elements().is_empty())
 }
 
 pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
@@ -87,6 +113,12 @@ pub(crate) fn ground(history: &ShakeHistory) -> Chart {
 /// The tracking error of each floor, and the tracking indicator of all as a length: divided by the largest command.
 pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     let missed = |step: &S| {
+        if !step.elements().is_empty() {
+            let elements = step.elements().iter();
+            return elements
+                .map(|read| read.deformation - read.target)
+                .collect();
+        }
         step.measured()
             .iter()
             .zip(step.command())
@@ -96,7 +128,11 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     let mut chart = each_floor(
         steps,
         Quantity::of("Tracking error", Dimension::LENGTH),
-        "floor",
+        if has_elements(steps) {
+            "element"
+        } else {
+            "floor"
+        },
         missed,
     );
     // Mostly rounding and noise, alternating at every step: dashes would not be visible.
@@ -228,9 +264,10 @@ fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> V
     over_time(y, curves.collect())
 }
 
-/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
+/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor or element.
 fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(usize, Points)> {
-    let mut curves: Vec<(usize, PointCollector)> = shown(floors(steps))
+    let count = steps.first().map_or(0, |step| read(step).len());
+    let mut curves: Vec<(usize, PointCollector)> = shown(count)
         .into_iter()
         .map(|floor| (floor, PointCollector::default()))
         .collect();

@@ -72,13 +72,7 @@ pub(crate) fn chart(
             charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
             format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
-        FigureKind::Hysteresis => (
-            charts::hysteresis(&history.steps),
-            format!(
-                "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
-                storey_shear(run)
-            ),
-        ),
+        FigureKind::Hysteresis => (charts::hysteresis(&history.steps), loops(run, name, chosen)),
         FigureKind::BaseShear => (
             charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
@@ -90,7 +84,10 @@ pub(crate) fn chart(
             charts::energy(history),
             format!("{name}: input energy of the ground motion and its parts."),
         ),
-        FigureKind::Tracking => (charts::tracking(&history.steps), followed(name, chosen)),
+        FigureKind::Tracking => (
+            charts::tracking(&history.steps),
+            followed(run, name, chosen),
+        ),
         _ => return None,
     })
 }
@@ -113,6 +110,21 @@ pub(crate) fn unloading_chart(
     })
 }
 
+/// The caption of the loops.
+pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
+    let frame = run.plan.frame_on_the_rig();
+    if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        let force = measured("force of each element", frame);
+        return format!(
+            "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element."
+        );
+    }
+    format!(
+        "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
+        storey_shear(run)
+    )
+}
+
 /// The storey shear of a caption, with what of it was measured.
 pub(crate) fn storey_shear(run: &Run<'_>) -> String {
     measured("storey shear", run.plan.frame_on_the_rig())
@@ -129,9 +141,15 @@ pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
 }
 
 /// The caption of the tracking of a frame.
-pub(crate) fn followed(name: &str, chosen: &str) -> String {
+pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
+    let frame = run.plan.frame_on_the_rig();
+    let of = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        "element"
+    } else {
+        "floor"
+    };
     format!(
-        "{name}: tracking error of each floor's actuator{chosen}, and the tracking indicator of all of them over the \
+        "{name}: tracking error of each {of}'s actuator{chosen}, and the tracking indicator of all of them over the \
          largest command; a falling indicator shows that lag adds energy to the test."
     )
 }

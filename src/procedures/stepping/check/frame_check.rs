@@ -8,7 +8,6 @@ use crate::procedures::common::violations::{
 use psd_language::check::checker::Checker;
 use psd_language::check::violations::NoEffect;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::storeys_of;
 use psd_plan::formula::NoResults;
 use psd_plan::schema::{frames, methods, specimen};
 use psd_plan::{Frame, Integrator, MOST_STEPS, Mode, Part, ShakeDamping, Stepping, steps_in};
@@ -83,9 +82,9 @@ pub fn check(
             });
         }
     };
-    if let (Integrator::Tangent, None, Some((_, entry))) = (
+    if let (Integrator::Tangent, false, Some((_, entry))) = (
         stepping.integrator,
-        storeys_of(&properties.matrices.stiffness),
+        properties.has_tangents(),
         checker.field(block, methods::MAX_TANGENT_RATIO.name),
     ) {
         let message = "`max_tangent_ratio` has no effect: full matrices keep the initial stiffness";
@@ -160,13 +159,14 @@ fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<
             .iter()
             .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
     };
-    let is_measured = steps
-        .frame
-        .storeys
-        .iter()
-        .any(|storey| storey.damping > 0.0);
+    let is_measured = steps.frame.members().any(|member| member.damping > 0.0);
     if computed && is_measured && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
-        let fields = [frames::DAMPING_RATIO.name, specimen::STOREYS.name];
+        let members = if steps.frame.elements.is_empty() {
+            specimen::STOREYS.name
+        } else {
+            specimen::ELEMENTS.name
+        };
+        let fields = [frames::DAMPING_RATIO.name, members];
         warn_of_damping_twice(checker, block, steps.specimen, fields);
     }
 }

@@ -6,7 +6,7 @@ use crate::report::figures::structure;
 use crate::report::number::{self, percent};
 use crate::report::wording::{conditions as wording, specimen as specimen_text};
 use psd_plan::scaled::at_scale;
-use psd_plan::{Frame, Ground, Part};
+use psd_plan::{Element, Frame, Ground, Part};
 use psd_text::units::Dimension;
 
 /// Storeys from the ground up, or the files of the matrices.
@@ -21,7 +21,12 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     if let Some([mass, stiffness]) = &frame.files {
         rows.push(("mass matrix", mass.clone()));
         rows.push(("stiffness matrix", stiffness.clone()));
-        rows.push(("virtual behaviour", "elastic, R = K·X".to_owned()));
+        let behaviour = if frame.elements.is_empty() {
+            ("virtual behaviour", "elastic, R = K·X")
+        } else {
+            ("stiffness matrix", "computed, beside the elements")
+        };
+        rows.push((behaviour.0, behaviour.1.to_owned()));
     }
     let substructures = specimen_text::substructures(frame);
     rows.extend(substructures.clone().map(|text| ("substructures", text)));
@@ -30,6 +35,10 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     rows.extend(numbers.map(|text| ("numbers", text)));
     body.push(described(rows));
     if frame.storeys.is_empty() {
+        if !frame.elements.is_empty() {
+            body.push(elements(frame));
+            body.push(Block::note(specimen_text::assumed(frame)));
+        }
         return;
     }
     let is_hybrid = substructures.is_some();
@@ -84,11 +93,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         } else if !loads.is_empty() {
             cells.extend(["—", "—"].map(Text::from));
         }
-        let part = match storey.part {
-            Part::Tested { scale, .. } => format!("tested{}", at_scale(&scale)),
-            Part::Computed => "computed".to_owned(),
-        };
-        cells.extend(is_hybrid.then(|| part.into()));
+        cells.extend(is_hybrid.then(|| part(&storey.part).into()));
         cells.push(specimen_text::words(&storey.behaviour, &number::stated).into());
         cells.extend(damping.then(|| number::stated(storey.damping, Dimension::DAMPING).into()));
         cells.extend(friction.then(|| number::stated(storey.coulomb, Dimension::FORCE).into()));
@@ -100,6 +105,44 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     }));
     if is_hybrid {
         body.push(Block::note(specimen_text::assumed(frame)));
+    }
+}
+
+/// The elements of a frame of matrices.
+fn elements(frame: &Frame) -> Block {
+    let end = |end: Option<usize>| end.map_or(0, |end| end + 1);
+    let row = |(index, element): (usize, &Element)| -> Vec<Text> {
+        let [from, to] = element.ends.map(end);
+        vec![
+            (index + 1).to_string().into(),
+            format!("{from} to {to}").into(),
+            part(&element.part).into(),
+            number::stated(element.stiffness, Dimension::STIFFNESS).into(),
+            specimen_text::words(&element.behaviour, &number::stated).into(),
+        ]
+    };
+    let is_scaled = specimen_text::numbers(frame).is_some();
+    let behaviour = if is_scaled {
+        "Behaviour, on the rig if tested"
+    } else {
+        "Behaviour"
+    };
+    Block::Table(Table {
+        columns: vec![
+            Column::numbers("Element"),
+            Column::words("From, to (0: ground)", 1),
+            Column::words("Part", 1),
+            Column::numbers("Stiffness"),
+            Column::words(behaviour, 1),
+        ],
+        rows: frame.elements.iter().enumerate().map(row).collect(),
+    })
+}
+
+fn part(part: &Part) -> String {
+    match part {
+        Part::Tested { scale, .. } => format!("tested{}", at_scale(scale)),
+        Part::Computed => "computed".to_owned(),
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
     ))
 }
 
-/// One row per actuator, from the ground up; none if every actuator reached its targets. A computed storey of `frame` has no actuator.
+/// One row per actuator, from the ground up or in the order of the elements; none if every actuator reached its targets. A computed storey of `frame` has no actuator.
 pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Option<Block> {
     let list = |name: &str| procedure.list(name).unwrap_or_default();
     let (energy, indicator) = (
@@ -74,6 +74,11 @@ pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Optio
         wording::LARGEST_IN_PROTOTYPE
     } else {
         peak_column
+    };
+    let floor = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        wording::OF_ELEMENT
+    } else {
+        floor
     };
     let columns = vec![
         Column::words(floor, 1),

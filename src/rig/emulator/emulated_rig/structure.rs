@@ -1,4 +1,4 @@
-//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every tested storey. In: positions and
+//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every tested storey or element. In: positions and
 //! moves of the actuators. Out: the restoring force at each. It knows no rig and no sensor.
 
 use psd_physics::relaxation::maxwell::Motion;
@@ -65,12 +65,12 @@ impl Structure {
     }
 
     pub fn of_frame(frame: &Frame) -> Self {
-        if frame.storeys.is_empty() {
+        if frame.is_matrix_on_the_rig() {
             return Self::Matrix(frame.stiffness.clone());
         }
         let storeys = on_the_rig(frame).map(|(storey, stands)| {
             let damping = CellDamping::new(storey.damping, storey.coulomb);
-            Storey::new(&storey.behaviour, damping, stands)
+            Storey::new(storey.behaviour, damping, stands)
         });
         Self::Storeys(storeys.collect())
     }

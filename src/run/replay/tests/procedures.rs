@@ -4,10 +4,10 @@ use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::{
-    Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
-    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Part, Plan, Procedure,
-    ProcedureKind, Scale, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test,
-    Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
+    Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Element, Escalate,
+    Frame, Ground, Impact, InspectTrigger, Integrator, Level, Member, Mode, Move, Part, Plan,
+    Procedure, ProcedureKind, Scale, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey,
+    Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use psd_text::units::Dimension;
 
@@ -135,6 +135,26 @@ pub(super) fn shaken_hybrid(mode: Mode) -> Plan {
         };
     };
     plan.specimens[0].frame = Some(frame.with(hybrid));
+    plan
+}
+
+/// The same with its storeys as elements of a frame of matrices.
+pub(super) fn shaken_elements(mode: Mode) -> Plan {
+    let mut plan = shaken_hybrid(mode);
+    let frame = plan.specimens[0].frame.as_ref().unwrap();
+    let element = |member: Member<'_>| Element {
+        ends: member.ends,
+        stiffness: member.stiffness,
+        stiffness_uncertainty: 0.0,
+        behaviour: member.behaviour.clone(),
+        damping: member.damping,
+        coulomb: member.coulomb,
+        part: member.part,
+    };
+    let order = frame.degrees_of_freedom();
+    let elements = frame.members().map(element).collect();
+    let matrices = Frame::of_matrices(frame.mass.clone(), vec![vec![0.0; order]; order]);
+    plan.specimens[0].frame = Some(matrices.with_elements(elements));
     plan
 }
 
@@ -281,6 +301,7 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
             "shake with a computed storey, a scale and weights",
             shaken_hybrid(Mode::StepAndPause),
         ),
+        ("shake with elements", shaken_elements(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("storey without a stop", struck_without_a_stop()),
         ("unload", unloading()),

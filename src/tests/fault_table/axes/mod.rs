@@ -3,6 +3,7 @@
 
 mod continuous;
 mod control_points;
+mod elements;
 mod forged_replies;
 mod hybrid;
 mod several;

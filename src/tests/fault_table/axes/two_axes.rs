@@ -54,6 +54,11 @@ const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.05,3\n0.1,3\n0.2,-3\n
 fn folder(path: &str) -> Result<String, LoadError> {
     let known = [
         ("ground.csv", GROUND),
+        ("mass.csv", "2000, 0, 0\n0, 1500, 0\n0, 0, 1000\n"),
+        (
+            "stiffness.csv",
+            "3e5, -2e5, 0\n-2e5, 4e5, -2e5\n0, -2e5, 2e5\n",
+        ),
         (
             "lib/two_actuator_frame.psd",
             include_str!("../../../../plans/lib/two_actuator_frame.psd"),

@@ -1,5 +1,6 @@
 //! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, and weights on the floors.
 
+mod elements;
 pub(crate) mod escalate;
 pub(crate) mod gravity;
 pub(crate) mod hybrid;

@@ -16,7 +16,7 @@ use psd_plan::{
 };
 
 /// Half scale; one of two equal parts; scales of displacement and of force that are not those of lengths; all together.
-const SCALES: [Scale; 4] = [
+pub(super) const SCALES: [Scale; 4] = [
     of(0.5, 0.25, 1.0),
     of(1.0, 1.0, 2.0),
     of(0.5, 0.3, 1.0),
@@ -32,7 +32,7 @@ const fn of(displacement: f64, force: f64, represents: f64) -> Scale {
 }
 
 /// The model of the specimen on the rig: displacements λ_x, forces λ_f/n.
-fn model_on_the_rig(behaviour: &Behaviour, scale: &Scale) -> Behaviour {
+pub(super) fn model_on_the_rig(behaviour: &Behaviour, scale: &Scale) -> Behaviour {
     let mut model = behaviour.clone();
     match &mut model {
         Behaviour::Elastic { stiffness } => *stiffness = scale.stiffness_on_the_rig(*stiffness),

@@ -11,6 +11,7 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::tests::testing::struck_frame;
 use psd_physics::integrator::state::FrameState;
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::{Damping, FrameEnergies};
 use psd_physics::tracking::monitor::Tracking;
@@ -67,6 +68,8 @@ impl Stepped for &mut Sine {
     fn effective_force(&self, force: &mut [f64]) {
         force.copy_from_slice(&self.state.restoring_force);
     }
+
+    fn read_elements(&mut self, _: &[ElementReading]) {}
 
     fn complete(&mut self, reading: &Reading) {
         self.state.step += 1;
@@ -139,6 +142,7 @@ fn followed(
         gravity_force: Vec::new(),
         load: nothing(),
         storey_stiffness: Vec::new(),
+        elements: Vec::new(),
         energies: FrameEnergies::default(),
     };
     let mut sine = Sine {

@@ -44,6 +44,7 @@ pub fn at<'a>(
     zero: &'a [f64],
 ) -> FrameInput<'a> {
     FrameInput {
+        elements: None,
         matrices,
         operator_stiffness: &matrices.stiffness,
         integrator,

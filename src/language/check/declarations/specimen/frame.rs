@@ -4,37 +4,33 @@
 use std::rc::Rc;
 
 use crate::check::checker::{Checker, Context};
-use crate::check::declarations::striker::MOST_UNCERTAIN;
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
-use crate::codes::{E405, E409, E621, E622, E623, E668, E670};
+use crate::codes::{E405, E621, E622, E623, E668, E670};
+
 use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
-use psd_plan::schema::{Field, FieldType, specimen as fields};
-use psd_plan::{Behaviour, Frame, MOST_STOREYS, Part, Scale, Storey};
+use psd_plan::schema::specimen as fields;
+use psd_plan::{Frame, MOST_STOREYS, Part, Storey};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
-use psd_text::source::{Span, Spanned};
+use psd_text::source::Span;
 use psd_text::units::Dimension;
 use psd_text::units::display::significant;
 
-use super::behaviour::{self, Material, Written};
+use super::elements::with_elements;
 use super::matrix;
-use super::scale::{AnotherScaleInOneSpecimen, StoreyOfAnotherScale, scale};
+use super::scale::AnotherScaleInOneSpecimen;
+use super::spring::{Place, STOREY, not_too_uncertain, spring};
 
 /// Fields that make a specimen a frame.
-pub const FIELDS: [&str; 3] = [
+pub const FIELDS: [&str; 4] = [
     fields::STOREYS.name,
     fields::MASS_MATRIX.name,
     fields::STIFFNESS_MATRIX.name,
+    fields::ELEMENTS.name,
 ];
-
-/// Relative difference up to which a stiffness equals that of its model: the last digits of a sum or a quotient.
-const SAME: f64 = 1e-9;
-
-/// Number of standard uncertainties up to which they agree, if the plan states one.
-const WITHIN: f64 = 3.0;
 
 /// Uncertainties of the matrices, with the field that each belongs to.
 const MATRIX_UNCERTAINTIES: [&str; 2] = [
@@ -70,7 +66,7 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     let frame = report_once(checker, block).and_then(|()| {
         match checker.field(block, fields::STOREYS.name) {
             Some(_) => storeys(checker, block).map(Frame::of_storeys),
-            None => matrices(checker, block),
+            None => matrices(checker, block).and_then(|frame| with_elements(checker, block, frame)),
         }
     });
     let frame = frame.map(Rc::new);
@@ -125,11 +121,13 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
     let storeys = checker.field(block, fields::STOREYS.name);
     let matrices = [fields::MASS_MATRIX.name, fields::STIFFNESS_MATRIX.name]
         .map(|field| checker.field(block, field));
-    let first = storeys.or(matrices[0]).or(matrices[1])?.1;
+    let elements = checker.field(block, fields::ELEMENTS.name);
+    let first = storeys.or(matrices[0]).or(matrices[1]).or(elements)?.1;
     let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.field(block, field));
     let beside_storeys = matrices
         .into_iter()
         .chain(of_matrices)
+        .chain([elements])
         .flatten()
         .filter(|_| storeys.is_some());
     let of_one = OF_ONE
@@ -154,8 +152,19 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
             given: &stiffness.key,
             missing: fields::MASS_MATRIX.name,
         }),
+        (None, [None, None]) => checker.fail(ElementsAlone {
+            span: first.key.span,
+        }),
         _ => Some(()),
     }
+}
+
+#[derive(Violation)]
+#[violation(E623, "`elements` requires `mass_matrix` and `stiffness_matrix`")]
+#[help("add the matrices of the computed part, or write the frame as `storeys`")]
+struct ElementsAlone {
+    #[label("matrices missing")]
+    span: Span,
 }
 
 struct MatrixUncertaintyAlone<'a> {
@@ -355,95 +364,12 @@ struct ApartFromNothing {
 }
 
 #[derive(Violation)]
-#[violation(E668, "storey {number} is computed, but has `{field}`")]
-#[help(
-    "remove `{field}`: it is in the force of a virtual rig; the frame's own damping is the `damping_ratio` of the procedure"
-)]
-struct RigDampingOfComputed<'a> {
-    number: usize,
-    field: &'a str,
-    #[label("of a virtual rig")]
-    span: Span,
-    #[label("no rig carries the storey")]
-    part: Span,
-}
-
-/// The substructure of a storey.
-fn part<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, context: Context) -> Option<Part> {
-    if chosen.span(storey::PART).is_none() {
-        return Some(Part::TESTED);
-    }
-    let word = checker.chosen_argument(chosen, storey::PART)?;
-    if word.variant.name == storey::COMPUTED {
-        return Some(Part::Computed);
-    }
-    let apart = match word.span(storey::APART) {
-        Some(_) => checker.chosen_argument(&word, storey::APART)?.variant.name == "true",
-        None => false,
-    };
-    let scale = scale(checker, &word, context)?;
-    Some(Part::Tested { apart, scale })
-}
-
-#[derive(Violation)]
 #[violation(E622, "storey {number} has two stiffnesses")]
 #[help("keep `stiffness` (whole storey) or `column_stiffness` (one of its two columns)")]
 struct StoreyStiffnessTwice {
     number: usize,
     #[label("given again")]
     span: Span,
-}
-
-#[derive(Violation)]
-#[violation(E622, "storey {number} has no stiffness")]
-#[help(
-    "add `stiffness: 3 MN/m`, or `column_stiffness: 1.5 MN/m` for one of its two columns, or a `behaviour`"
-)]
-struct StoreyWithoutStiffness {
-    number: usize,
-    #[label("stiffness missing")]
-    span: Span,
-}
-
-/// A stiffness \[N/m\], by the name of its field, beside a model with a different initial stiffness \[N/m\].
-struct StoreyBendsOtherwise<'a> {
-    number: usize,
-    field: &'a str,
-    stated: Spanned<f64>,
-    model: Spanned<f64>,
-}
-
-impl Violation for StoreyBendsOtherwise<'_> {
-    const CODE: Code = E409;
-
-    fn diagnostic(self) -> Diagnostic {
-        let Self {
-            number,
-            field,
-            stated,
-            model,
-        } = self;
-        let (stated_at, model_at) = (stated.span, model.span);
-        let (stated, initial) = (
-            shown(stated.node, Dimension::STIFFNESS),
-            shown(model.node, Dimension::STIFFNESS),
-        );
-        Diagnostic::new(
-            Self::CODE,
-            format!(
-                "storey {number}: stated stiffness {stated} differs from the \
-     model's initial stiffness {initial}"
-            ),
-        )
-        .at(stated_at, format!("stated stiffness: {stated}"))
-        .at(
-            model_at,
-            format!("initial stiffness of the model: {initial}"),
-        )
-        .help(format!(
-            "remove `{field}`, or set `stiffness_uncertainty` to a third of the difference or more"
-        ))
-    }
 }
 
 fn storey<'a>(
@@ -455,130 +381,48 @@ fn storey<'a>(
 ) -> Option<Storey> {
     let mass = checker.constant_argument(chosen, storey::MASS, context);
     let mass_uncertainty = checker.constant_argument(chosen, storey::MASS_UNCERTAINTY, context);
-    let stiffness_uncertainty =
-        checker.constant_argument(chosen, storey::STIFFNESS_UNCERTAINTY, context);
     let height = checker.optional_argument(chosen, storey::HEIGHT, context);
     let gravity = checker.constant_argument(chosen, storey::GRAVITY, context);
-    let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
-    let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
-    let behaviour = match chosen.find(storey::BEHAVIOUR) {
-        Some((
-            Field {
-                ty: FieldType::Choice(variants),
-                ..
-            },
-            Some(expr),
-        )) => {
-            let written = Written {
-                field: storey::BEHAVIOUR,
-                variants,
-                expr,
-                context,
-                material: Material::default(),
-            };
-            behaviour::behaviour(checker, &written).map(Some)
-        }
-        _ => Some(None),
+    let place = Place {
+        word: STOREY,
+        number,
+        at,
     };
-    let damping = checker.constant_argument(chosen, storey::DAMPING, context);
-    let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
-    let part = part(checker, chosen, context);
-    let (mass, height, gravity, behaviour, damping, coulomb) =
-        (mass?, height?, gravity?, behaviour?, damping?, coulomb?);
-    let part = part?;
-    let scale = part.scale();
-    for (field, value) in [(storey::DAMPING, damping), (storey::COULOMB, coulomb)] {
-        if part == Part::Computed && value != 0.0 {
-            return checker.fail(RigDampingOfComputed {
-                number,
-                field,
-                span: chosen.span(field).unwrap_or(at),
-                part: chosen.span(storey::PART).unwrap_or(at),
-            });
+    let stated = |checker: &mut Checker<'a>| {
+        let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
+        let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
+        match (total?, column?) {
+            (Some(_), Some(_)) => {
+                let span = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
+                checker.fail(StoreyStiffnessTwice { number, span })
+            }
+            (total, column) => Some(total.or(column.map(|column| 2.0 * column))),
         }
-    }
-    let stiffness = match (total?, column?, &behaviour) {
-        (Some(_), Some(_), _) => {
-            let again = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
-            return checker.fail(StoreyStiffnessTwice {
-                number,
-                span: again,
-            });
-        }
-        (Some(stiffness), None, _) => stiffness,
-        (None, Some(column), _) => 2.0 * column,
-        (None, None, Some(behaviour)) => scale.stiffness_of_storey(behaviour.initial_stiffness()),
-        (None, None, None) => return checker.fail(StoreyWithoutStiffness { number, span: at }),
     };
-    let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
-    let differs = |initial: f64| {
-        let model = scale.stiffness_of_storey(initial);
-        (stiffness - model).abs() > SAME * stiffness.max(model) + WITHIN * stiffness_uncertainty
-    };
-    if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
-        && differs(initial)
-    {
-        let given = [storey::STIFFNESS, storey::COLUMN_STIFFNESS]
-            .into_iter()
-            .find_map(|field| Some((field, chosen.span(field)?)));
-        let (field, given) = given.unwrap_or((storey::STIFFNESS, at));
-        let bends = chosen.span(storey::BEHAVIOUR).unwrap_or(at);
-        let (stated, model) = (Spanned::new(stiffness, given), Spanned::new(initial, bends));
-        if scale != Scale::FULL {
-            return checker.fail(StoreyOfAnotherScale {
-                number,
-                stated,
-                model,
-                scale: Spanned::new(scale, chosen.span(storey::PART).unwrap_or(at)),
-            });
-        }
-        return checker.fail(StoreyBendsOtherwise {
-            number,
-            field,
-            stated,
-            model,
-        });
-    }
-    let behaviour = behaviour.unwrap_or(Behaviour::Elastic {
-        stiffness: scale.stiffness_on_the_rig(stiffness),
-    });
-    let stated = [
-        (
-            storey::MASS_UNCERTAINTY,
-            mass_uncertainty,
-            mass,
-            Dimension::MASS,
-        ),
-        (
-            storey::STIFFNESS_UNCERTAINTY,
-            stiffness_uncertainty,
-            stiffness,
-            Dimension::STIFFNESS,
-        ),
-    ];
-    for (field, uncertainty, value, dimension) in stated {
-        if uncertainty > MOST_UNCERTAIN * value {
-            let at = chosen.span(field).unwrap_or(at);
-            return checker.fail(TooUncertain {
-                field,
-                uncertainty,
-                value,
-                dimension,
-                span: at,
-            });
-        }
-    }
+    let spring = spring(checker, chosen, place, context, stated);
+    let (mass, mass_uncertainty, height, gravity) = (mass?, mass_uncertainty?, height?, gravity?);
+    let spring = spring?;
+    not_too_uncertain(
+        checker,
+        TooUncertain {
+            field: storey::MASS_UNCERTAINTY,
+            uncertainty: mass_uncertainty,
+            value: mass,
+            dimension: Dimension::MASS,
+            span: chosen.span(storey::MASS_UNCERTAINTY).unwrap_or(at),
+        },
+    )?;
     Some(Storey {
         mass,
         mass_uncertainty,
-        stiffness,
-        stiffness_uncertainty,
+        stiffness: spring.stiffness,
+        stiffness_uncertainty: spring.stiffness_uncertainty,
         height,
         gravity,
-        behaviour,
-        damping,
-        coulomb,
-        part,
+        behaviour: spring.behaviour,
+        damping: spring.damping,
+        coulomb: spring.coulomb,
+        part: spring.part,
     })
 }
 
@@ -616,13 +460,10 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     let [Some(of_mass), Some(of_stiffness)] = matrix_uncertainty else {
         return None;
     };
-    let files = Some([mass_file, stiffness_file]);
     Some(Frame {
-        storeys: Vec::new(),
-        mass,
-        stiffness,
-        files,
+        files: Some([mass_file, stiffness_file]),
         matrix_uncertainty: [of_mass, of_stiffness],
+        ..Frame::of_matrices(mass, stiffness)
     })
 }
 
@@ -643,7 +484,15 @@ fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String
     let span = written.value.span;
     let name = checker.text_field(block, field)?;
     let file = checker.data_file(&name, span)?;
-    match matrix::read(&file.text) {
+    // Beside elements K may be singular: a part that elements alone hold.
+    let beside = field == fields::STIFFNESS_MATRIX.name
+        && checker.field(block, fields::ELEMENTS.name).is_some();
+    let read = if beside {
+        matrix::read_symmetric(&file.text)
+    } else {
+        matrix::read(&file.text)
+    };
+    match read {
         Ok(matrix) => Some((file.name, matrix)),
         Err(reason) => checker.fail(BadMatrix {
             file: &file.name,

@@ -8,6 +8,13 @@ const SYMMETRIC: f64 = 1e-9;
 
 /// The matrix in `text`; blank lines and lines that begin with `#` are ignored.
 pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
+    let matrix = read_symmetric(text)?;
+    positive_definite(&matrix)?;
+    Ok(matrix)
+}
+
+/// The same of a matrix that is symmetric alone.
+pub fn read_symmetric(text: &str) -> Result<Vec<Vec<f64>>, String> {
     let written = (1..)
         .zip(text.lines())
         .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
@@ -20,12 +27,17 @@ pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
     }
     square(&matrix)?;
     symmetric(&mut matrix)?;
-    match first_pivot_that_is_not_positive(&matrix) {
+    Ok(matrix)
+}
+
+/// The reason why it is not.
+pub fn positive_definite(matrix: &[Vec<f64>]) -> Result<(), String> {
+    match first_pivot_that_is_not_positive(matrix) {
         Some(row) => Err(format!(
             "not positive definite: the determinant of the first {} rows and columns is not positive",
             row + 1
         )),
-        None => Ok(matrix),
+        None => Ok(()),
     }
 }
 

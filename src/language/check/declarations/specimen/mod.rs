@@ -3,10 +3,12 @@
 mod backbone;
 mod beam;
 pub mod behaviour;
+mod elements;
 pub mod frame;
 mod matrix;
 mod portal;
 mod scale;
+mod spring;
 mod table_file;
 
 use crate::check::checker::Checker;

@@ -68,6 +68,8 @@ pub struct AnotherScaleInOneSpecimen {
 
 /// A stated stiffness of a storey \[N/m\] beside a model with a different initial stiffness \[N/m\] on the rig.
 pub struct StoreyOfAnotherScale {
+    /// `storey` or `element`.
+    pub word: &'static str,
     pub number: usize,
     pub stated: Spanned<f64>,
     pub model: Spanned<f64>,
@@ -111,6 +113,7 @@ impl Violation for StoreyOfAnotherScale {
 
     fn diagnostic(self) -> Diagnostic {
         let Self {
+            word,
             number,
             stated,
             model,
@@ -123,15 +126,15 @@ impl Violation for StoreyOfAnotherScale {
         Diagnostic::new(
             Self::CODE,
             format!(
-                "storey {number}: stated stiffness {of_stated} differs from that of its model, {of_model} on the rig or {of_storey} of \
-     the storey"
+                "{word} {number}: stated stiffness {of_stated} differs from that of its model, {of_model} on the rig or {of_storey} of \
+     the {word}"
             ),
         )
         .at(stated.span, format!("stated stiffness: {of_stated}"))
         .at(model.span, format!("initial stiffness on the rig: {of_model}"))
-        .at(scale.span, format!("of the storey: {of_storey}"))
+        .at(scale.span, format!("of the {word}: {of_storey}"))
         .help(format!(
-            "write {}; a scale is a length on the rig over that of the storey",
+            "write {}; a scale is a length on the rig over that of the {word}",
             corrections.join(", or ")
         ))
     }

@@ -55,3 +55,11 @@ pub const FLOOR_PEAK_ERROR: ResultKind = ResultKind::list(
     Dimension::LENGTH,
     "`peak_error` of each floor's actuator",
 );
+
+/// The lists above: of each floor, or of each element of a frame of matrices.
+pub const OF_EACH_AXIS: [ResultKind; 4] = [
+    FLOOR_TRACKING_ENERGY_ERROR,
+    FLOOR_TRACKING_INDICATOR,
+    FLOOR_NRMS_ERROR,
+    FLOOR_PEAK_ERROR,
+];

@@ -15,6 +15,7 @@ use psd_text::units::Dimension;
 
 /// The argument of an axis that names its storey.
 pub const AXIS_STOREY: &str = "storey";
+pub const AXIS_ELEMENT: &str = "element";
 
 /// The entries of one axis, each in place of the rig's own.
 pub(super) const AXIS: &[Variant] = &[Variant::with(
@@ -150,6 +151,13 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
             "storey that the axis moves, counted from the ground up",
         )
         .default_in_words("the tested storeys in their order"),
+        Field::count(
+            AXIS_ELEMENT,
+            1.0,
+            64.0,
+            "element of a frame of matrices that the axis moves, counted from the first",
+        )
+        .default_in_words("the tested elements in their order"),
     ],
     "actuator with its load cell",
 )];

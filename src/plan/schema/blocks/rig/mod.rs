@@ -6,7 +6,7 @@ mod forms;
 use super::devices::{LONGEST_WAIT, SERIAL, TCP};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use axis::AXIS;
-pub use axis::AXIS_STOREY;
+pub use axis::{AXIS_ELEMENT, AXIS_STOREY};
 pub use forms::{
     AFTER, DISPLACEMENT_DRIFT, FORCE_DRIFT, FORCE_RATE, FORCE_RESOLUTION, LAG, OVER, PROBE,
     PROBED_STIFFNESS, SEED, SETTLED_FOR, SETTLED_WITHIN, TIMEOUT, TRACKING, ZERO_FORCE,

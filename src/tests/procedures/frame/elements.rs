@@ -1,0 +1,596 @@
+//! Frames of matrices with elements: a frame of storeys moves as its matrix and elements, in every arrangement; elements between any
+//! degrees of freedom move as an independent recursion.
+
+use super::hybrid::{
+    COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
+    shaken, struck, twice,
+};
+use super::scaled::{SCALES, model_on_the_rig};
+use crate::tests::testing::run_unwatched;
+use crate::tests::uncertainty::frame::{entry, from};
+use psd_physics::structure::Damping;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::procedures::shake::block::{FINAL_DRIFT, MAX_BASE_SHEAR};
+use psd_plan::record::{FloorMotion, History, Record};
+use psd_plan::uncertainty::Source;
+use psd_plan::{
+    Behaviour, Contact, Element, Frame, Integrator, Link, Mode, Part, Plan, Storey, VirtualLink,
+};
+
+/// An element of this stiffness \[N/m\].
+fn element(from: usize, to: usize, stiffness: f64, model: fn(f64) -> Behaviour) -> Element {
+    Element {
+        ends: [from, to].map(|degree| degree.checked_sub(1)),
+        stiffness,
+        stiffness_uncertainty: 0.0,
+        behaviour: model(stiffness),
+        damping: 0.0,
+        coulomb: 0.0,
+        part: TESTED,
+    }
+}
+
+fn of_storey((index, storey): (usize, &Storey)) -> Element {
+    Element {
+        ends: [index.checked_sub(1), Some(index)],
+        stiffness: storey.stiffness,
+        stiffness_uncertainty: storey.stiffness_uncertainty,
+        behaviour: storey.behaviour.clone(),
+        damping: storey.damping,
+        coulomb: storey.coulomb,
+        part: storey.part,
+    }
+}
+
+fn frame(plan: &Plan) -> &Frame {
+    plan.specimens[0].frame.as_ref().unwrap()
+}
+
+/// The same frame: storeys that `in_matrix` selects are in K, the others are elements.
+fn as_elements(mut plan: Plan, in_matrix: fn(&Storey) -> bool) -> Plan {
+    let storeys = &frame(&plan).storeys;
+    let kept = |storey: &Storey| Storey {
+        stiffness: if in_matrix(storey) {
+            storey.stiffness
+        } else {
+            0.0
+        },
+        ..storey.clone()
+    };
+    let matrix = Frame::of_storeys(storeys.iter().map(kept).collect());
+    let elements = storeys.iter().enumerate();
+    let elements = elements.filter(|(_, storey)| !in_matrix(storey));
+    let elements = elements.map(of_storey).collect();
+    let frame = Frame::of_matrices(matrix.mass, matrix.stiffness).with_elements(elements);
+    plan.specimens[0].frame = Some(frame);
+    plan
+}
+
+fn no(_: &Storey) -> bool {
+    false
+}
+
+fn is_computed(storey: &Storey) -> bool {
+    storey.part == Part::Computed
+}
+
+/// The energies of every step are those of the other run.
+fn same_energies(found: &Record, wanted: &Record, case: &str) {
+    let steps = |record: &Record| match &record.procedures[0].history {
+        History::Shake(history) => history.steps.clone(),
+        other => panic!("{other:?}"),
+    };
+    let (found, wanted) = (steps(found), steps(wanted));
+    let largest = wanted.iter().map(|step| step.energies.input.abs());
+    let largest = largest.fold(0.0, f64::max);
+    for (found, wanted) in found.iter().zip(&wanted) {
+        let (a, b) = (found.energies, wanted.energies);
+        for (a, b) in [
+            (a.kinetic, b.kinetic),
+            (a.restoring, b.restoring),
+            (a.damping, b.damping),
+            (a.input, b.input),
+            (a.error, b.error),
+        ] {
+            assert!((a - b).abs() <= 1e-11 * largest, "{case}: {a} for {b}");
+        }
+    }
+}
+
+#[test]
+fn storeys_move_as_their_matrix_and_elements() {
+    for model in [elastic, bilinear, bouc_wen] {
+        for integrator in INTEGRATORS {
+            for parts in [[TESTED; 3]].into_iter().chain(SPLITS) {
+                let plan = shaken(parts, model, integrator);
+                let storeys = run_unwatched(&plan);
+                let elements = run_unwatched(&as_elements(plan, no));
+                let case = format!("{integrator:?}, {:?}, {parts:?}", model(1.0));
+                same(&elements, &storeys, 0, 1e-12, &case);
+                same_energies(&elements, &storeys, &case);
+            }
+        }
+    }
+}
+
+/// Computed storeys that stay elastic are the stiffness matrix. The tangent of the tested storey is its own secant.
+#[test]
+fn elastic_storeys_can_be_in_the_matrix() {
+    for integrator in INTEGRATORS {
+        for tested in 0..3 {
+            let mut plan = shaken([COMPUTED; 3], elastic, integrator);
+            let yields = |storeys: &mut [Storey]| {
+                storeys[tested].part = TESTED;
+                storeys[tested].behaviour = bilinear(storeys[tested].stiffness);
+            };
+            plan.specimens[0].frame = Some(frame(&plan).with(yields));
+            let storeys = run_unwatched(&plan);
+            let elements = run_unwatched(&as_elements(plan, is_computed));
+            let case = format!("{integrator:?}, storey {tested} tested");
+            same(&elements, &storeys, 0, 1e-12, &case);
+        }
+    }
+}
+
+#[test]
+fn an_impact_on_storeys_is_that_on_their_elements() {
+    for (integrator, contact) in [
+        (Integrator::Tangent, Contact::Rigid),
+        (
+            Integrator::Explicit,
+            Contact::Limit {
+                force: Constant(2e4),
+            },
+        ),
+        (Integrator::AlphaOs { alpha: 0.0 }, Contact::Rigid),
+    ] {
+        for floor in 0..3 {
+            for parts in SPLITS {
+                let plan = struck(parts, floor, integrator, contact.clone());
+                let storeys = run_unwatched(&plan);
+                let elements = run_unwatched(&as_elements(plan, no));
+                let case = format!("{integrator:?}, floor {floor}, {parts:?}");
+                same(&elements, &storeys, 0, 1e-11, &case);
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_stop_storeys_move_as_their_elements() {
+    for parts in [[TESTED, COMPUTED, COMPUTED], [COMPUTED, TESTED, COMPUTED]] {
+        let mut plan = shaken(parts, bilinear, Integrator::AlphaOs { alpha: -0.05 });
+        shake(&mut plan).stepping.mode = Mode::Continuous { time_scale: 100.0 };
+        let storeys = run_unwatched(&plan);
+        let elements = run_unwatched(&as_elements(plan, no));
+        same(&elements, &storeys, 0, 1e-11, &format!("{parts:?}"));
+    }
+}
+
+/// Elements from the ground to the deck and between piers, three in a circle, beside a matrix that couples all degrees of freedom.
+fn bridge(parts: [Part; 4], model: fn(f64) -> Behaviour, integrator: Integrator) -> Plan {
+    let mut plan = shaken([TESTED; 3], elastic, integrator);
+    shake(&mut plan).damping = psd_plan::ShakeDamping::Rayleigh(Constant(0.0));
+    let mass = vec![
+        vec![2000.0, 100.0, 0.0],
+        vec![100.0, 1500.0, 50.0],
+        vec![0.0, 50.0, 1000.0],
+    ];
+    let stiffness = vec![
+        vec![3e5, -1e5, -5e4],
+        vec![-1e5, 1.2e5, 0.0],
+        vec![-5e4, 0.0, 6e4],
+    ];
+    let elements = [
+        element(0, 1, 4e5, model),
+        element(1, 3, 2e5, model),
+        element(3, 2, 1.5e5, model),
+        element(2, 1, 1e5, model),
+    ];
+    let elements = elements.into_iter().zip(parts);
+    let elements = elements.map(|(element, part)| Element { part, ..element });
+    let frame = Frame::of_matrices(mass, stiffness).with_elements(elements.collect());
+    plan.specimens[0].frame = Some(frame);
+    plan
+}
+
+/// A x = b by elimination with the largest pivot.
+fn solved(a: &[[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
+    let mut a = *a;
+    for pivot in 0..3 {
+        let largest = (pivot..3).max_by(|i, j| a[*i][pivot].abs().total_cmp(&a[*j][pivot].abs()));
+        a.swap(pivot, largest.unwrap());
+        b.swap(pivot, largest.unwrap());
+        for row in pivot + 1..3 {
+            let factor = a[row][pivot] / a[pivot][pivot];
+            let of_pivot = a[pivot];
+            for (entry, of_pivot) in a[row].iter_mut().zip(of_pivot).skip(pivot) {
+                *entry -= factor * of_pivot;
+            }
+            b[row] -= factor * b[pivot];
+        }
+    }
+    for row in (0..3).rev() {
+        for column in row + 1..3 {
+            b[row] -= a[row][column] * b[column];
+        }
+        b[row] /= a[row][row];
+    }
+    b
+}
+
+fn times(a: &[[f64; 3]; 3], x: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|row| (0..3).map(|column| a[row][column] * x[column]).sum())
+}
+
+/// Kinematic bilinear, written as an elastic spring and an elastic, perfectly plastic one side by side.
+#[derive(Clone, Copy, Default)]
+struct Yielding {
+    plastic: f64,
+    deformation: f64,
+    force: f64,
+}
+
+impl Yielding {
+    fn go(&mut self, stiffness: f64, deformation: f64) -> f64 {
+        let (ratio, yield_force) = (0.05, 0.01 * stiffness);
+        let own = (1.0 - ratio) * stiffness;
+        let most = (1.0 - ratio) * yield_force;
+        let trial = own * (deformation - self.plastic);
+        let held = trial.clamp(-most, most);
+        self.plastic = deformation - held / own;
+        self.deformation = deformation;
+        self.force = ratio * stiffness * deformation + held;
+        self.force
+    }
+}
+
+/// Displacements of the bridge by the published recursions, with full matrices.
+fn recursion(plan: &Plan, integrator: Integrator) -> Vec<[f64; 3]> {
+    let frame = frame(plan);
+    let dense = |rows: &[Vec<f64>]| -> [[f64; 3]; 3] {
+        std::array::from_fn(|row| std::array::from_fn(|column| rows[row][column]))
+    };
+    let (mass, matrix) = (dense(&frame.mass), dense(&frame.computed_stiffness));
+    let springs: Vec<([f64; 3], f64)> = frame
+        .elements
+        .iter()
+        .map(|element| {
+            let mut side = [0.0; 3];
+            if let Some(from) = element.ends[0] {
+                side[from] = -1.0;
+            }
+            if let Some(to) = element.ends[1] {
+                side[to] = 1.0;
+            }
+            (side, element.stiffness)
+        })
+        .collect();
+    let with = |tangents: &[f64], factor: f64| -> [[f64; 3]; 3] {
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| {
+                let springs = springs.iter().zip(tangents);
+                let springs = springs.map(|((side, _), k)| k * side[row] * side[column]);
+                mass[row][column] + factor * (matrix[row][column] + springs.sum::<f64>())
+            })
+        })
+    };
+    let ground = &plan.grounds[0].accelerations;
+    let load = |step: usize| times(&mass, &[1.0; 3]).map(|mass| -mass * ground[step]);
+    let initial: Vec<f64> = springs.iter().map(|(_, stiffness)| *stiffness).collect();
+    let (mut states, mut tangents) = (vec![Yielding::default(); 4], initial.clone());
+    let force_at = |x: &[f64; 3], states: &mut Vec<Yielding>, tangents: &mut Vec<f64>| {
+        let mut force = times(&matrix, x);
+        for (((side, stiffness), state), tangent) in
+            springs.iter().zip(states.iter_mut()).zip(tangents)
+        {
+            let deformation = (0..3).map(|degree| side[degree] * x[degree]).sum::<f64>();
+            let before = *state;
+            let element = state.go(*stiffness, deformation);
+            let moved = deformation - before.deformation;
+            if moved != 0.0 {
+                *tangent = ((element - before.force) / moved).clamp(0.0, 2.0 * stiffness);
+            }
+            for degree in 0..3 {
+                force[degree] += side[degree] * element;
+            }
+        }
+        force
+    };
+    let dt = 0.01;
+    let (mut x, mut v) = ([0.0; 3], [0.0; 3]);
+    let mut force = [0.0; 3];
+    let mut a = solved(&mass, load(0));
+    let mut path = vec![x];
+    for step in 1..ground.len() {
+        let next = load(step);
+        if integrator == Integrator::Tangent {
+            let k = |now: &[[f64; 3]; 3], x: &[f64; 3]| {
+                let moved = times(now, x);
+                let inert = times(&mass, x);
+                [0, 1, 2].map(|i| moved[i] - inert[i])
+            };
+            let glide = [0, 1, 2].map(|i| dt * v[i] + 0.25 * dt * dt * a[i]);
+            let stiff = k(&with(&tangents, 1.0), &glide);
+            let right = [0, 1, 2].map(|i| next[i] - force[i] - stiff[i]);
+            let after = solved(&with(&tangents, 0.25 * dt * dt), right);
+            for i in 0..3 {
+                x[i] += dt * v[i] + 0.25 * dt * dt * (a[i] + after[i]);
+                v[i] += 0.5 * dt * (a[i] + after[i]);
+            }
+            a = after;
+            force = force_at(&x, &mut states, &mut tangents);
+        } else {
+            let is_split = integrator != Integrator::Explicit;
+            let beta = if is_split { 0.25 } else { 0.0 };
+            let target = [0, 1, 2].map(|i| x[i] + dt * v[i] + dt * dt * (0.5 - beta) * a[i]);
+            let read = force_at(&target, &mut states, &mut tangents);
+            let right = [0, 1, 2].map(|i| next[i] - read[i]);
+            let after = solved(&with(&initial, beta * dt * dt), right);
+            v = [0, 1, 2].map(|i| v[i] + 0.5 * dt * (a[i] + after[i]));
+            x = [0, 1, 2].map(|i| target[i] + beta * dt * dt * after[i]);
+            a = after;
+        }
+        path.push(x);
+    }
+    path
+}
+
+/// The force at the start of a step is the reading of the last one; α-OS adds `K_I`(d − d̃) in its own equation only.
+#[test]
+fn elements_between_any_degrees_of_freedom_move_as_an_independent_recursion() {
+    let arrangements = [
+        [TESTED; 4],
+        [COMPUTED; 4],
+        [TESTED, COMPUTED, TESTED, COMPUTED],
+        [COMPUTED, TESTED, COMPUTED, COMPUTED],
+    ];
+    for integrator in [
+        Integrator::Tangent,
+        Integrator::Explicit,
+        Integrator::AlphaOs { alpha: 0.0 },
+    ] {
+        for parts in arrangements {
+            let plan = bridge(parts, bilinear, integrator);
+            let wanted = recursion(&plan, integrator);
+            let found = floors(&run_unwatched(&plan), 0);
+            let largest = wanted
+                .iter()
+                .flatten()
+                .fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(largest > 0.03, "the elements yield: {largest}");
+            assert_eq!(found.len(), wanted.len());
+            for (found, wanted) in found.iter().zip(&wanted) {
+                for (found, wanted) in found.computed.iter().zip(wanted) {
+                    let off = (found - wanted).abs();
+                    assert!(off < 1e-11 * largest, "{integrator:?}, {parts:?}: {off}");
+                }
+            }
+        }
+    }
+}
+
+/// An elastic element, on the rig or computed, is its stiffness in K: the frame of that matrix is on the rig as a whole.
+#[test]
+fn a_linear_element_is_its_stiffness_in_the_matrix() {
+    for integrator in INTEGRATORS {
+        for parts in [
+            [TESTED; 4],
+            [COMPUTED; 4],
+            [TESTED, COMPUTED, COMPUTED, TESTED],
+        ] {
+            let mut plan = bridge(parts, elastic, integrator);
+            shake(&mut plan).damping = psd_plan::ShakeDamping::Rayleigh(Constant(0.05));
+            let elements = run_unwatched(&plan);
+            let Frame {
+                mass, stiffness, ..
+            } = frame(&plan).clone();
+            let frame = Frame::of_matrices(mass, stiffness);
+            let ratios = |frame: &Frame| {
+                let of = FrameProperties::of(frame, &Damping::rayleigh(0.05)).unwrap();
+                (of.modes.periods.clone(), of.damping_ratios())
+            };
+            assert_eq!(ratios(&frame), ratios(self::frame(&plan)));
+            plan.specimens[0].frame = Some(frame);
+            let whole = run_unwatched(&plan);
+            let case = format!("{integrator:?}, {parts:?}");
+            same(&elements, &whole, 0, 1e-12, &case);
+            same_energies(&elements, &whole, &case);
+        }
+    }
+}
+
+/// No energy of the tangent form is lost: constant average acceleration closes exactly on elastic elements.
+#[test]
+fn the_energy_of_elastic_elements_closes() {
+    let plan = bridge(
+        [TESTED, COMPUTED, TESTED, COMPUTED],
+        elastic,
+        Integrator::Tangent,
+    );
+    let record = run_unwatched(&plan);
+    let History::Shake(history) = &record.procedures[0].history else {
+        panic!()
+    };
+    let largest = history.steps.iter().map(|step| step.energies.input.abs());
+    let largest = largest.fold(0.0, f64::max);
+    for step in &history.steps {
+        assert!(step.energies.error.abs() < 1e-12 * largest && largest > 0.0);
+    }
+}
+
+#[test]
+fn elements_at_a_scale_move_as_at_full_scale() {
+    for integrator in INTEGRATORS {
+        let plan = bridge([TESTED, COMPUTED, TESTED, TESTED], bilinear, integrator);
+        let full = run_unwatched(&plan);
+        for scale in SCALES {
+            let mut plan = plan.clone();
+            let mut elements = frame(&plan).elements.clone();
+            for element in &mut elements {
+                if let Part::Tested { scale: own, .. } = &mut element.part {
+                    *own = scale;
+                    element.behaviour = model_on_the_rig(&element.behaviour, &scale);
+                }
+            }
+            plan.specimens[0].frame = Some(frame(&plan).clone().with_elements(elements));
+            let found = run_unwatched(&plan);
+            same(
+                &found,
+                &full,
+                0,
+                1e-12,
+                &format!("{integrator:?}, {scale:?}"),
+            );
+            let read = |record: &Record| floors(record, 0).last().unwrap().elements.clone();
+            for (found, full) in read(&found).iter().zip(read(&full)) {
+                assert!((found.force - full.force).abs() < 1e-9 * full.force.abs());
+                assert!((found.deformation - full.deformation).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// An actuator ends every increment 5 % short. Its element has the measured deformation, its degrees of freedom the imposed displacement.
+#[test]
+fn the_i_modification_corrects_each_element_in_its_own_coordinates() {
+    for integrator in INTEGRATORS {
+        let mut plan = bridge([TESTED, COMPUTED, TESTED, TESTED], elastic, integrator);
+        let ideal = floors(&run_unwatched(&plan), 0);
+        plan.rig.link = Link::Virtual(VirtualLink {
+            tracking: 0.05,
+            ..VirtualLink::default()
+        });
+        shake(&mut plan).stepping.i_modification = true;
+        let record = run_unwatched(&plan);
+        let short = floors(&record, 0);
+        let largest = |of: fn(&FloorMotion) -> f64| {
+            short
+                .iter()
+                .map(of)
+                .fold(0.0, |most: f64, value| most.max(value.abs()))
+        };
+        assert!(largest(|at| at.elements[2].deformation - at.elements[2].target) > 1e-4);
+        assert_eq!(
+            largest(|at| at.elements[1].deformation - at.elements[1].target),
+            0.0
+        );
+        assert_eq!(largest(|at| at.displacement[1] - at.command[1]), 0.0);
+        let most = largest(|at| at.computed[2]);
+        for (short, ideal) in short.iter().zip(&ideal) {
+            for (short, ideal) in short.computed.iter().zip(&ideal.computed) {
+                assert!(
+                    (short - ideal).abs() < 1e-10 * most,
+                    "{integrator:?}: {}",
+                    (short - ideal).abs()
+                );
+            }
+        }
+        let errors = record.procedures[0].result("floor_peak_error").unwrap();
+        let errors = errors.value.values();
+        assert!(
+            errors.len() == 4 && errors[1] == 0.0 && errors[2] > 1e-4,
+            "{errors:?}"
+        );
+    }
+}
+
+/// The second test begins where the rig is, with K and the computed elements in balance.
+#[test]
+fn a_second_test_begins_in_balance() {
+    for parts in [[TESTED, COMPUTED, COMPUTED], [COMPUTED, TESTED, COMPUTED]] {
+        let mut plan = twice(parts);
+        plan.procedures.remove(1);
+        let storeys = run_unwatched(&plan);
+        let elements = run_unwatched(&as_elements(plan, no));
+        same(&elements, &storeys, 1, 1e-9, &format!("{parts:?}"));
+    }
+    let mut plan = bridge(
+        [TESTED, COMPUTED, COMPUTED, COMPUTED],
+        bilinear,
+        Integrator::Explicit,
+    );
+    let again = plan.procedures[0].clone();
+    plan.procedures.push(psd_plan::Procedure {
+        name: "again".to_owned(),
+        ..again
+    });
+    let record = run_unwatched(&plan);
+    let (ended, begins) = (floors(&record, 0), floors(&record, 1));
+    let (ended, begins) = (ended.last().unwrap(), &begins[0]);
+    assert!((begins.command[0] - ended.command[0]).abs() < 1e-15);
+    // The actuator holds the first degree of freedom; the others have no force.
+    let ended = ended.restoring_force[2].abs();
+    for force in &begins.restoring_force[1..] {
+        assert!(force.abs() < 1e-2 * ended, "{force} after {ended}");
+    }
+}
+
+/// The budget of the same frame as storeys: calibration of the tested one, stiffness of the computed ones.
+#[test]
+fn elements_have_the_budget_of_storeys() {
+    let mut plan = shaken([COMPUTED, TESTED, COMPUTED], bilinear, Integrator::Explicit);
+    let uncertain = |storeys: &mut [Storey]| {
+        for storey in storeys {
+            storey.stiffness_uncertainty = 6e3;
+        }
+    };
+    plan.specimens[0].frame = Some(frame(&plan).with(uncertain));
+    plan.rig.calibration.force_uncertainty = 0.01;
+    plan.rig.calibration.displacement_uncertainty = 0.002;
+    let storeys = run_unwatched(&plan);
+    let elements = run_unwatched(&as_elements(plan, no));
+    let of_storey = |storey| Source::StoreyStiffness {
+        specimen: 0,
+        storey,
+    };
+    let of_element = |element| Source::ElementStiffness {
+        specimen: 0,
+        element,
+    };
+    let mut pairs: Vec<(Source, Source)> = (0..3).map(|i| (of_storey(i), of_element(i))).collect();
+    for own in [Source::ForceScale(0), Source::DisplacementScale(0)] {
+        pairs.push((own, own));
+    }
+    for (result, count) in [(FINAL_DRIFT.name, 3), (MAX_BASE_SHEAR.name, 1)] {
+        for index in 0..count {
+            let [(_, storeys), (_, elements)] =
+                [&storeys, &elements].map(|record| entry(record, result, index));
+            for (storey, element) in &pairs {
+                let (wanted, found) = (from(&storeys, *storey), from(&elements, *element));
+                assert!(
+                    (found - wanted).abs() <= 1e-6 * wanted.abs() && wanted != 0.0,
+                    "{result}[{index}], {element:?}: {found} for {wanted}"
+                );
+            }
+        }
+    }
+}
+
+/// The stiffness matrix is computed: its uncertainty is that of the force of the model.
+#[test]
+fn the_computed_matrix_is_uncertain() {
+    let plan = |by: f64, uncertainty: f64| {
+        let mut plan = bridge(
+            [TESTED, COMPUTED, TESTED, COMPUTED],
+            elastic,
+            Integrator::Explicit,
+        );
+        let mut frame = frame(&plan).scaled([1.0, 1.0 + by]);
+        frame.matrix_uncertainty = [0.0, uncertainty];
+        plan.specimens[0].frame = Some(frame);
+        run_unwatched(&plan)
+    };
+    let drift = |record: &Record, index: usize| entry(record, FINAL_DRIFT.name, index).0;
+    let (record, more, less) = (plan(0.0, 0.01), plan(0.01, 0.0), plan(-0.01, 0.0));
+    for index in 0..3 {
+        let wanted = 0.5 * (drift(&more, index) - drift(&less, index));
+        let (_, parts) = entry(&record, FINAL_DRIFT.name, index);
+        let found = from(&parts, Source::StiffnessMatrix(0));
+        assert!(
+            (found.abs() - wanted.abs()).abs() < 0.02 * wanted.abs() && wanted != 0.0,
+            "{found} for {wanted}"
+        );
+    }
+}
