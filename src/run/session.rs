@@ -54,9 +54,14 @@ impl<'run> Session<'run> {
         let identity = rig.identity();
         let is_simulated = identity.simulated && plan.rig.link.as_real().is_none();
         let datum = rig.datum().is_some();
-        let wanted = plan.degrees_of_freedom();
+        let wanted = plan.axes_on_the_rig();
         let guard = if axes == wanted {
-            Guard::new(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
+            Guard::with_axial_axes(
+                rig,
+                plan.limits,
+                plan.rig.limits_of_axes(&plan.limits),
+                plan.rig.axial_axes(&plan.limits),
+            )
         } else {
             rig.hold();
             let degrees = |count| {

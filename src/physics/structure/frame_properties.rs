@@ -17,7 +17,8 @@ use crate::structure::{
 #[derive(Clone, Debug)]
 pub struct FrameProperties {
     pub matrices: FrameMatrices,
-    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings.
+    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings:
+    /// of a storey with an axial load on the rig, without the share of G that is in its reading.
     pub operator: SymmetricBand,
     /// Of K − G.
     pub modes: Modes,
@@ -43,24 +44,36 @@ impl FrameProperties {
         let unloaded = modes(&mass, &stiffness)?;
         let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
         let weights = frame.gravity_stiffness();
-        let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
+        let mut gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
         let computes = frame
             .storeys
             .iter()
             .any(|storey| storey.part == Part::Computed);
-        let operator = if computes {
+        let mut operator = if computes {
             let storeys = frame.storeys.iter().map(Storey::operator_stiffness);
             storey_stiffness(&storeys.collect::<Vec<f64>>())
         } else {
             stiffness.clone()
         };
+        let mut stiffness = stiffness;
+        if frame.has_axial_load() {
+            // The axial load lowers the readings of its storey, and the share of G that is computed: K − G remains.
+            let on_the_rig: Vec<f64> = frame.storeys.iter().map(Storey::axial_stiffness).collect();
+            let computed = weights.iter().zip(&on_the_rig).map(|(all, own)| all - own);
+            let computed: Vec<f64> = computed.collect();
+            let on_the_rig = storey_stiffness(&on_the_rig);
+            stiffness.add(&on_the_rig, -1.0);
+            operator.add(&on_the_rig, -1.0);
+            let is_computed = computed.iter().any(|share| *share != 0.0);
+            gravity = is_computed.then(|| storey_stiffness(&computed));
+        }
         let matrices = FrameMatrices {
             mass,
             damping,
             stiffness,
             gravity,
         };
-        let modes = if matrices.gravity.is_some() {
+        let modes = if !weights.is_empty() {
             modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
         } else {
             unloaded
@@ -156,7 +169,11 @@ impl FrameProperties {
                     largest.unwrap_or(storey.operator_stiffness())
                 })
                 .collect();
-            met.highest = own.max(self.highest(&self.matrices.net(&storey_stiffness(&behaves))));
+            let read = frame.storeys.iter().zip(&behaves);
+            let read: Vec<f64> = read
+                .map(|(storey, behaves)| behaves - storey.axial_stiffness())
+                .collect();
+            met.highest = own.max(self.highest(&self.matrices.net(&storey_stiffness(&read))));
             let storeys = || frame.storeys.iter().zip(&behaves);
             // G is in both stiffnesses, and cancels in their difference.
             let mut weights = frame.gravity_stiffness();

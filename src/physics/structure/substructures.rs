@@ -37,6 +37,8 @@ pub struct Assemblies {
     supports: Vec<Support>,
     /// The same; full for a computed storey.
     scales: Vec<Scale>,
+    /// The geometric stiffness of the axial load in the reading of each storey \[N/m\]; 0 without an axial load.
+    axial: Vec<f64>,
 }
 
 /// From the ground up; empty for a frame without storeys.
@@ -116,6 +118,8 @@ pub struct StoreyReadings {
     pub cells: f64,
     /// Whether the drift is the difference of two transducers.
     pub is_difference: bool,
+    /// The P-Δ per drift that is in the shear \[N/m\], by the axial load on the rig: so much can its tangent be below 0.
+    pub axial_stiffness: f64,
 }
 
 impl StoreyReadings {
@@ -126,6 +130,7 @@ impl StoreyReadings {
             noise,
             cells: 1.0,
             is_difference: false,
+            axial_stiffness: 0.0,
         }
     }
 
@@ -143,7 +148,7 @@ impl StoreyReadings {
 }
 
 impl Assemblies {
-    /// None if the whole frame is one specimen on the rig at full scale.
+    /// None if the whole frame is one specimen on the rig at full scale, without an axial load.
     #[must_use]
     pub fn of(frame: &Frame) -> Option<Self> {
         let (supports, scales) = (supports(frame), scales(frame));
@@ -155,8 +160,13 @@ impl Assemblies {
             };
             *support == as_one && scales[storey] == Scale::FULL
         };
-        let is_whole = supports.iter().enumerate().all(whole);
-        (!is_whole).then_some(Self { supports, scales })
+        let is_whole = supports.iter().enumerate().all(whole) && !frame.has_axial_load();
+        let axial = frame.storeys.iter().map(Storey::axial_stiffness);
+        (!is_whole).then(|| Self {
+            axial: axial.collect(),
+            supports,
+            scales,
+        })
     }
 
     /// So many floors, as one specimen on the rig.
@@ -166,6 +176,7 @@ impl Assemblies {
         Self {
             supports: std::iter::once(Support::StrongFloor).chain(above).collect(),
             scales: vec![Scale::FULL; floors.max(1)],
+            axial: vec![0.0; floors.max(1)],
         }
     }
 
@@ -315,6 +326,7 @@ impl Assemblies {
             },
             cells: self.shear_of(storey).len() as f64,
             is_difference: self.supports[storey] == Support::Below,
+            axial_stiffness: self.axial[storey],
         };
         (0..self.supports.len()).map(storey).collect()
     }
@@ -330,6 +342,7 @@ impl Assemblies {
         let tested = self.at_axes(storeys).into_iter().zip(self.scales());
         let on_the_rig = tested.map(|(readings, scale)| StoreyReadings {
             noise: scale.noise_on_the_rig(readings.noise),
+            axial_stiffness: scale.stiffness_on_the_rig(readings.axial_stiffness),
             ..readings
         });
         on_the_rig.collect()

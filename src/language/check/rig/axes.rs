@@ -1,4 +1,4 @@
-//! `axes = [axis(…), …]` of a real rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
+//! `axes = [axis(…), …]` of a rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
 //! an [`AxisPlan`] each. It also compares their number with the storeys of the specimen; `device` reads the devices.
 
 use crate::check::checker::{Checker, Context};
@@ -14,6 +14,7 @@ use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
+use super::axial;
 use super::device::{Device, device};
 use super::probe::probe;
 use super::{CheckedRig, context_of};
@@ -42,7 +43,30 @@ pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
         .iter()
         .map(|chosen| axis(checker, block, chosen, context))
         .collect();
-    axes.into_iter().collect()
+    let axes: Vec<CheckedAxis> = axes.into_iter().collect::<Option<_>>()?;
+    axial::check_order(checker, block, &axes)?;
+    Some(axes)
+}
+
+/// The axes that a virtual rig lists.
+pub fn simulated(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
+    if checker.field(block, schema::AXES.name).is_some() {
+        for chosen in checker.choices(block, schema::AXES.name)? {
+            axial::simulated(checker, &chosen);
+        }
+    }
+    let axes = axes(checker, block)?;
+    Some(axes.into_iter().map(|axis| axis.plan).collect())
+}
+
+/// The span of an axis in the list of a rig.
+pub fn item_of(checker: &Checker, block: usize, axis: usize) -> Option<Span> {
+    let (_, written) = checker.field(block, schema::AXES.name)?;
+    let whole = written.value.span;
+    Some(match &written.value.kind {
+        ExprKind::List { items, .. } => items.get(axis).map_or(whole, |item| item.span),
+        _ => whole,
+    })
 }
 
 fn axis<'a>(
@@ -93,6 +117,7 @@ fn axis<'a>(
         reason = "a count from 1 to 64"
     )]
     let storey = storey?.map(|storey: f64| storey as usize - 1);
+    let axial = axial::axial(checker, chosen, displacement?, context);
     let plan = AxisPlan {
         storey,
         polarity: polarity?,
@@ -105,6 +130,7 @@ fn axis<'a>(
         calibration: calibration?,
         actuator: link(&actuator),
         load_cell: link(&load_cell),
+        axial: axial?,
     };
     Some(CheckedAxis {
         plan,
@@ -208,7 +234,9 @@ fn calibration<'a>(
 
 struct AnotherNumberOfAxes<'a> {
     rig: &'a str,
+    /// That move a storey sideways.
     axes: usize,
+    axial: usize,
     specimen: &'a str,
     storeys: usize,
     is_hybrid: bool,
@@ -222,6 +250,7 @@ impl Violation for AnotherNumberOfAxes<'_> {
         let Self {
             rig,
             axes,
+            axial,
             specimen,
             storeys,
             is_hybrid,
@@ -233,6 +262,10 @@ impl Violation for AnotherNumberOfAxes<'_> {
             _ => format!("the frame `{specimen}` has {storeys} storeys"),
         };
         let help = match storeys {
+            _ if axial > 0 => format!(
+                "list {} before the axial ones, the lowest storey first",
+                axes_of(storeys)
+            ),
             1 => "remove `axes`: a rig without it has one axis".to_owned(),
             _ => format!(
                 "list {storeys} axes, the lowest storey first: axes = [{}]",
@@ -242,8 +275,13 @@ impl Violation for AnotherNumberOfAxes<'_> {
         Diagnostic::new(
             Self::CODE,
             format!(
-                "number of axes differs: rig `{rig}` has {}, {needs}",
-                axes_of(axes)
+                "number of axes differs: rig `{rig}` has {}{}, {needs}",
+                axes_of(axes),
+                if axial > 0 {
+                    " that move a storey sideways"
+                } else {
+                    ""
+                }
             ),
         )
         .at(at, axes_of(axes))
@@ -261,15 +299,18 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
     else {
         return;
     };
-    let (Some(axes), Some((_, written))) = (plan.axes(), checker.field(*block, schema::AXES.name))
-    else {
+    let Some((_, written)) = checker.field(*block, schema::AXES.name) else {
         return;
     };
+    let listed = plan.listed_axes();
+    let lateral = listed.iter().take_while(|axis| axis.axial.is_none());
+    let axes = lateral.count();
     let storeys = specimen.degrees_of_freedom();
     if axes != storeys {
         checker.report(AnotherNumberOfAxes {
             rig: &plan.name,
             axes,
+            axial: listed.len() - axes,
             specimen: &specimen.name,
             storeys,
             is_hybrid: specimen.frame.as_ref().and_then(Assemblies::of).is_some(),
@@ -277,14 +318,11 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
         });
         return;
     }
-    if let (Some(frame), Some(link)) = (&specimen.frame, plan.link.as_real()) {
-        let at = |axis: usize| match &written.value.kind {
-            ExprKind::List { items, .. } => {
-                items.get(axis).map_or(written.value.span, |item| item.span)
-            }
-            _ => written.value.span,
-        };
-        check_storeys(checker, frame, &link.axes, &at);
+    if let Some(frame) = &specimen.frame {
+        check_storeys(checker, frame, &listed[..axes], *block);
+    }
+    if let Some(rig) = rig {
+        axial::check_storeys(checker, rig, specimen);
     }
 }
 
@@ -311,12 +349,7 @@ struct StoreyWithoutAxis {
 }
 
 /// The storeys that axes name are the tested storeys, from the ground up.
-fn check_storeys(
-    checker: &mut Checker,
-    frame: &Frame,
-    axes: &[AxisPlan],
-    at: &dyn Fn(usize) -> Span,
-) {
+fn check_storeys(checker: &mut Checker, frame: &Frame, axes: &[AxisPlan], block: usize) {
     let storeys = frame.degrees_of_freedom();
     let is_tested = |storey: usize| match frame.storeys.get(storey) {
         Some(storey) => storey.part != Part::Computed,
@@ -328,6 +361,9 @@ fn check_storeys(
         .filter_map(|(axis, plan)| Some((axis, plan.storey?)))
         .collect();
     for (axis, storey) in named {
+        let Some(at) = item_of(checker, block, axis) else {
+            return;
+        };
         if !is_tested(storey) {
             let known = tested.iter().map(|storey| (storey + 1).to_string());
             let (label, help) = if storey < storeys {
@@ -341,7 +377,7 @@ fn check_storeys(
             checker.report(AxisWithoutStorey {
                 axis: axis + 1,
                 storey: storey + 1,
-                at: at(axis),
+                at,
                 label,
                 help: format!("{help}{}", known.collect::<Vec<String>>().join(", ")),
             });
@@ -350,7 +386,7 @@ fn check_storeys(
         if tested[axis] != storey {
             checker.report(StoreyWithoutAxis {
                 storey: tested[axis] + 1,
-                at: at(axis),
+                at,
                 moves: storey + 1,
             });
             return;

@@ -19,6 +19,7 @@ use psd_text::source::Span;
 use psd_text::units::Dimension;
 
 use super::axes::{self, CheckedAxis};
+use super::axial;
 use super::device::{Device, device};
 use super::probe::probe;
 use super::{CheckedRig, axis_devices, context_of, kind};
@@ -75,6 +76,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         )?;
     }
     let axes = axes?;
+    axial::check_controllers(checker, &actuator, &axes)?;
     axis_devices::check(checker, block, &actuator, load_cell.as_ref(), &axes)?;
     Some(RealLink {
         actuator: actuator.link,

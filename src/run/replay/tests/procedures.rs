@@ -1,5 +1,6 @@
 //! A plan for every procedure that moves the rig.
 
+use crate::tests::procedures::frame::preload::preloaded;
 use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
@@ -117,6 +118,24 @@ pub(super) fn shaken_hybrid(mode: Mode) -> Plan {
     let lower = |storeys: &mut [Storey]| storeys[0].part = Part::Computed;
     plan.specimens[0].frame = Some(frame.with(lower));
     plan
+}
+
+/// The lower storey under an axial load, of which `unload` takes the load off.
+pub(super) fn shaken_under_a_load() -> Plan {
+    let mut plan = shaken(Mode::StepAndPause);
+    let frame = plan.specimens[0].frame.as_ref().unwrap();
+    let lower = |storeys: &mut [Storey]| storeys[0].height = Some(3.0);
+    plan.specimens[0].frame = Some(frame.with(lower));
+    plan.procedures.push(Procedure {
+        name: "rest".to_owned(),
+        kind: ProcedureKind::Unload(Unload {
+            specimen: 0,
+            stiffness: None,
+            within: None,
+            speed: None,
+        }),
+    });
+    preloaded(&plan, 0, 1e5, 1.0)
 }
 
 pub(super) fn escalating() -> Plan {
@@ -262,6 +281,7 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
             "shake with a computed storey",
             shaken_hybrid(Mode::StepAndPause),
         ),
+        ("shake under an axial load", shaken_under_a_load()),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("storey without a stop", struck_without_a_stop()),
         ("unload", unloading()),

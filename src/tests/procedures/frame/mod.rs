@@ -1,8 +1,10 @@
-//! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, and weights on the floors.
+//! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, weights on the floors, and axial loads
+//! on the rig.
 
 pub(crate) mod escalate;
 mod gravity;
 mod hybrid;
+pub(crate) mod preload;
 mod scaled;
 mod unloading;
 
@@ -35,6 +37,7 @@ pub(super) fn storey(index: usize, post_yield_ratio: f64) -> Storey {
         coulomb: 0.0,
         gravity: 0.0,
         part: Part::TESTED,
+        axial_load: 0.0,
     }
 }
 

@@ -23,7 +23,7 @@ const SCALES: [Scale; 4] = [
     of(0.4, 0.3, 3.0),
 ];
 
-const fn of(displacement: f64, force: f64, represents: f64) -> Scale {
+pub(super) const fn of(displacement: f64, force: f64, represents: f64) -> Scale {
     Scale {
         displacement,
         force,
@@ -55,7 +55,7 @@ fn model_on_the_rig(behaviour: &Behaviour, scale: &Scale) -> Behaviour {
 }
 
 /// The same test with every tested storey at a scale, on the rig that it needs. Numbers of the prototype do not change.
-fn at_scale(plan: &Plan, scale: Scale) -> Plan {
+pub(super) fn at_scale(plan: &Plan, scale: Scale) -> Plan {
     let mut plan = plan.clone();
     let frame = plan.specimens[0].frame.as_ref().unwrap();
     let (length, force) = (scale.displacement, scale.force / scale.represents);

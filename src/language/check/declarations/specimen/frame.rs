@@ -579,6 +579,7 @@ fn storey<'a>(
         damping,
         coulomb,
         part,
+        axial_load: 0.0,
     })
 }
 
