@@ -73,10 +73,10 @@ impl FrameProperties {
             stiffness,
             gravity,
         };
-        let modes = if !weights.is_empty() {
-            modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
-        } else {
+        let modes = if weights.is_empty() {
             unloaded
+        } else {
+            modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
         };
         Ok(Self {
             matrices,

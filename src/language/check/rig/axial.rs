@@ -83,10 +83,6 @@ const NOT_AXIAL: [&str; 3] = [
 ];
 
 /// The axial part of an axis with these limits of its displacement \[m\]: `Some(None)` if it is none.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
 pub fn axial<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
