@@ -2,9 +2,11 @@
 //! each reading the guard compares the force with its target, and the displacement with its band. No lateral axis moves.
 
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_plan::Preload;
+use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::preload::block as schema;
 use psd_plan::record::{AxialReading, EventKind, History};
 use psd_text::units::Dimension;
@@ -13,8 +15,12 @@ use psd_text::units::display::readable;
 /// Steps of the force.
 pub(crate) const STEPS: u32 = 10;
 
-pub(crate) fn perform(plan: &Preload, session: &mut Session<'_>) -> Performed {
-    let stop = load(plan, session).err();
+pub(crate) fn perform(
+    plan: &Preload,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    let stop = load(plan, inputs, session).err();
     let at_the_end: Option<AxialReading> = session
         .guard
         .axial_readings()
@@ -32,7 +38,8 @@ pub(crate) fn perform(plan: &Preload, session: &mut Session<'_>) -> Performed {
     }
 }
 
-fn load(plan: &Preload, session: &mut Session<'_>) -> Result<(), Stop> {
+fn load(plan: &Preload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
+    inputs.positive(schema::FORCE.name, &Constant(plan.force), Dimension::FORCE)?;
     for step in 1..=STEPS {
         let force = plan.force * f64::from(step) / f64::from(STEPS);
         let (reading, stop) = session.load_axially(Some(plan.storey), force)?;

@@ -10,10 +10,11 @@ use psd_physics::structure::substructures::Assemblies;
 use psd_plan::scaled::{at_scale, numbers_on_the_rig, storeys};
 use psd_plan::schema::behaviours;
 use psd_plan::{
-    Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Part,
-    Pinching, Portal, Sections, Unloading,
+    AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
+    Mechanism, Part, Pinching, Plan, Portal, ProcedureKind, Sections, Unloading,
 };
 use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 /// Prints a stated number, or one that follows from stated numbers.
 pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
@@ -100,6 +101,7 @@ pub fn assumed(frame: &Frame) -> String {
         (has(|part| *part == Part::Computed), MODELS_STATED),
         (has(|part| part.scale().force != 1.0), STRESSES_ALIKE),
         (has(|part| part.scale().represents > 1.0), PARTS_MOVE_ALIKE),
+        (frame.has_axial_load(), AXIAL_LOAD_IN_THE_READING),
     ];
     let sentences = assumed.into_iter().filter(|(holds, _)| *holds);
     let sentences: Vec<&str> = sentences.map(|(_, sentence)| sentence).collect();
@@ -112,6 +114,32 @@ const MODELS_STATED: &str = "The models of computed storeys are stated and were 
 const STRESSES_ALIKE: &str = "A specimen at a scale behaves as its storey: forces and displacements differ by the stated factors alone.";
 const PARTS_MOVE_ALIKE: &str =
     "The equal parts of a storey behave alike: one of them is on the rig.";
+
+const AXIAL_LOAD_IN_THE_READING: &str = "The share of the P-Δ of an axial load that is in the lateral reading is stated and was not measured.";
+
+/// An axial axis of the rig: the load that it holds, how, and the share of its P-Δ in the lateral reading.
+#[must_use]
+pub fn axial_axis(plan: &Plan, axis: &AxialAxis, band: Interval, shown: Printed<'_>) -> String {
+    let load = plan
+        .procedures
+        .iter()
+        .find_map(|procedure| match &procedure.kind {
+            ProcedureKind::Preload(load) if load.storey == axis.storey => Some(load.force),
+            _ => None,
+        });
+    let load = load.map_or_else(String::new, |load| {
+        format!(", {}", shown(load, Dimension::FORCE))
+    });
+    format!(
+        "storey {}{load} in force control ± {} at {}, between {} and {}; {} % of N u/h in the lateral reading",
+        axis.storey + 1,
+        shown(axis.tolerance, Dimension::FORCE),
+        shown(axis.rate, Dimension::FORCE_RATE),
+        shown(band.low, Dimension::LENGTH),
+        shown(band.high, Dimension::LENGTH),
+        significant(100.0 * axis.p_delta, 3),
+    )
+}
 
 /// The numbers of the report of a test of which a specimen has a scale. None for any other test.
 #[must_use]
