@@ -106,6 +106,15 @@ impl ProcedureKind {
         }
     }
 
+    /// The axial load that it applies: storey from 0, force \[N\].
+    #[must_use]
+    pub const fn axial_load(&self) -> Option<(usize, f64)> {
+        match self {
+            Self::Preload(load) => Some((load.storey, load.force)),
+            _ => None,
+        }
+    }
+
     /// The tested specimen, as an index into `Plan::specimens`; None of a procedure that only moves or inspects.
     #[must_use]
     pub const fn specimen(&self) -> Option<usize> {

@@ -11,7 +11,7 @@ use psd_plan::scaled::{at_scale, numbers_on_the_rig, storeys};
 use psd_plan::schema::behaviours;
 use psd_plan::{
     AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
-    Mechanism, Part, Pinching, Plan, Portal, ProcedureKind, Sections, Unloading,
+    Mechanism, Part, Pinching, Plan, Portal, Sections, Unloading,
 };
 use psd_text::units::Dimension;
 use psd_text::units::display::significant;
@@ -120,14 +120,10 @@ const AXIAL_LOAD_IN_THE_READING: &str = "The share of the P-Δ of an axial load 
 /// An axial axis of the rig: the load that it holds, how, and the share of its P-Δ in the lateral reading.
 #[must_use]
 pub fn axial_axis(plan: &Plan, axis: &AxialAxis, band: Interval, shown: Printed<'_>) -> String {
-    let load = plan
-        .procedures
-        .iter()
-        .find_map(|procedure| match &procedure.kind {
-            ProcedureKind::Preload(load) if load.storey == axis.storey => Some(load.force),
-            _ => None,
-        });
-    let load = load.map_or_else(String::new, |load| {
+    let loads = plan.procedures.iter();
+    let mut loads = loads.filter_map(|procedure| procedure.kind.axial_load());
+    let load = loads.find(|(storey, _)| *storey == axis.storey);
+    let load = load.map_or_else(String::new, |(_, load)| {
         format!(", {}", shown(load, Dimension::FORCE))
     });
     format!(

@@ -7,7 +7,6 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
 use crate::check::wording::axes_of;
 use crate::codes::E615;
-use crate::syntax::ast::ExprKind;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
@@ -17,7 +16,7 @@ use psd_text::source::Span;
 use super::axial;
 use super::device::{Device, device};
 use super::probe::probe;
-use super::{CheckedRig, context_of};
+use super::{CheckedRig, context_of, item_of};
 
 /// One axis, with the spans of its separate devices.
 pub struct CheckedAxis {
@@ -44,7 +43,8 @@ pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
         .map(|chosen| axis(checker, block, chosen, context))
         .collect();
     let axes: Vec<CheckedAxis> = axes.into_iter().collect::<Option<_>>()?;
-    axial::check_order(checker, block, &axes)?;
+    let is_axial: Vec<bool> = axes.iter().map(|axis| axis.plan.axial.is_some()).collect();
+    axial::check_order(checker, block, &is_axial)?;
     Some(axes)
 }
 
@@ -57,16 +57,6 @@ pub fn simulated(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
     }
     let axes = axes(checker, block)?;
     Some(axes.into_iter().map(|axis| axis.plan).collect())
-}
-
-/// The span of an axis in the list of a rig.
-pub fn item_of(checker: &Checker, block: usize, axis: usize) -> Option<Span> {
-    let (_, written) = checker.field(block, schema::AXES.name)?;
-    let whole = written.value.span;
-    Some(match &written.value.kind {
-        ExprKind::List { items, .. } => items.get(axis).map_or(whole, |item| item.span),
-        _ => whole,
-    })
 }
 
 fn axis<'a>(

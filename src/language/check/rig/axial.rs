@@ -1,9 +1,8 @@
 //! `axis(axial: 1, …)`: an axis that loads a storey along its height, in force control. In: its arguments, and the frame on the rig. Out: an
 //! [`AxialAxis`], or what is wrong. `axes` reads the list.
 
-use super::CheckedRig;
-use super::axes::{CheckedAxis, item_of};
 use super::device::Device;
+use super::{CheckedRig, item_of};
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
 use crate::codes::{E614, E675, E676, E677};
@@ -171,10 +170,10 @@ pub fn simulated(checker: &mut Checker, chosen: &Chosen<'_>) {
 }
 
 /// The axial axes are behind all others, as guard and run log have them.
-pub fn check_order(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<()> {
-    let first = axes.iter().position(|axis| axis.plan.axial.is_some());
+pub fn check_order(checker: &mut Checker, block: usize, is_axial: &[bool]) -> Option<()> {
+    let first = is_axial.iter().position(|is_axial| *is_axial);
     let Some(first) = first else { return Some(()) };
-    if axes[first..].iter().all(|axis| axis.plan.axial.is_some()) {
+    if is_axial[first..].iter().all(|is_axial| *is_axial) {
         return Some(());
     }
     let at = item_of(checker, block, first)?;
@@ -192,13 +191,11 @@ struct NoForceControl<'a> {
 }
 
 /// The controllers of axial axes must hold the displacement themselves when they leave force control.
-pub fn check_controllers(
+pub fn check_controllers<'a>(
     checker: &mut Checker,
-    actuator: &Device,
-    axes: &[CheckedAxis],
+    controllers: impl Iterator<Item = &'a Device>,
 ) -> Option<()> {
-    for axis in axes.iter().filter(|axis| axis.plan.axial.is_some()) {
-        let device = axis.actuator.as_ref().unwrap_or(actuator);
+    for device in controllers {
         if let Some(reason) = device.link.dialect.no_force_control() {
             return checker.fail(NoForceControl {
                 dialect: &device.link.dialect,

@@ -311,6 +311,16 @@ pub fn context_of(checker: &Checker, block: usize, field: &str) -> Option<Contex
         .map(|(entry, _)| checker.context_of(block, entry))
 }
 
+/// The span of an axis in the list of a rig.
+pub fn item_of(checker: &Checker, block: usize, axis: usize) -> Option<Span> {
+    let (_, written) = checker.field(block, schema::AXES.name)?;
+    let whole = written.value.span;
+    Some(match &written.value.kind {
+        ExprKind::List { items, .. } => items.get(axis).map_or(whole, |item| item.span),
+        _ => whole,
+    })
+}
+
 fn virtual_link<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,

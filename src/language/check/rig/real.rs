@@ -76,7 +76,9 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         )?;
     }
     let axes = axes?;
-    axial::check_controllers(checker, &actuator, &axes)?;
+    let axial = axes.iter().filter(|axis| axis.plan.axial.is_some());
+    let controllers = axial.map(|axis| axis.actuator.as_ref().unwrap_or(&actuator));
+    axial::check_controllers(checker, controllers)?;
     axis_devices::check(checker, block, &actuator, load_cell.as_ref(), &axes)?;
     Some(RealLink {
         actuator: actuator.link,
