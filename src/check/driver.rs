@@ -106,8 +106,11 @@ pub fn plan(
 ) -> Option<Plan> {
     checker.for_studies = options.for_studies;
     checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
-    for block in 0..checker.scope.blocks.len() {
-        checker.entries_of(block);
+    // Other values of the parameters leave the entries of a block as they are.
+    if findings == Findings::WarningsToo {
+        for block in 0..checker.scope.blocks.len() {
+            checker.entries_of(block);
+        }
     }
     let (title, particulars) =
         declarations::plan_block::plan_block(checker, options.date.as_deref());
@@ -168,11 +171,7 @@ pub fn plan(
         Findings::WarningsToo | Findings::OfStudies => declarations::study::studies(checker),
         Findings::ErrorsAlone => Some(Studies::default()),
     };
-    let in_plan_order: Vec<Option<Procedure>> = procedures
-        .iter()
-        .map(|(_, procedure)| procedure.clone())
-        .collect();
-    let report = report::report(checker, &in_plan_order);
+    let report = report::report(checker, &procedures);
     let golden = golden::golden(checker);
     if !has_error(checker) {
         let warns = findings == Findings::WarningsToo;
@@ -220,6 +219,8 @@ pub fn plan(
         }
     }
     let rig_block = rig.as_ref().and_then(|rig| rig.block);
+    let (blocks, in_plan_order): (Vec<usize>, Vec<Option<Procedure>>) =
+        procedures.into_iter().unzip();
     let plan = Plan {
         title: title.unwrap_or_else(|| stem(text.name).to_owned()),
         parameters,
@@ -237,11 +238,10 @@ pub fn plan(
         golden: golden?,
         check_run_of: None,
         studies: studies?,
-        files: [text.files, checker.data_files()].concat(),
+        files: text.files.into_iter().chain(checker.data_files()).collect(),
         settings: text.settings,
     };
     if !has_error(checker) {
-        let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
             of_the_language::guarded::warn_of_partial(checker, &plan, rig_block);

@@ -170,7 +170,7 @@ impl ParsedPlan {
             .iter()
             .map(|(_, file)| PlanFile {
                 name: file.name.clone(),
-                text: file.text.clone(),
+                text: file.text.as_str().into(),
             })
             .collect();
         let settings = read_settings(&mut sources, &imports.asts, &options.settings, &mut errors);

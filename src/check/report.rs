@@ -20,8 +20,8 @@ use psd_text::source::{Span, Spanned};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 
-/// `procedures` are in the order of the plan, None for each with an error.
-pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option<Report> {
+/// `procedures`, with their blocks, are in the order of the plan, None for each with an error.
+pub fn report(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) -> Option<Report> {
     let Some(block) = checker
         .scope
         .of_kind(Kind::Report)
@@ -229,8 +229,8 @@ fn format(name: &str) -> Format {
     }
 }
 
-fn every_figure(procedures: &[Option<Procedure>]) -> Vec<Figure> {
-    let of = |(index, procedure): (usize, &Option<Procedure>)| {
+fn every_figure(procedures: &[(usize, Option<Procedure>)]) -> Vec<Figure> {
+    let of = |(index, (_, procedure)): (usize, &(usize, Option<Procedure>))| {
         let kinds = procedure.as_ref().map_or(&[][..], |procedure| {
             crate::procedures::facts_of(&procedure.kind).figures
         });
@@ -246,7 +246,7 @@ fn every_figure(procedures: &[Option<Procedure>]) -> Vec<Figure> {
 fn figures(
     checker: &mut Checker,
     block: usize,
-    procedures: &[Option<Procedure>],
+    procedures: &[(usize, Option<Procedure>)],
 ) -> Option<Vec<Figure>> {
     let Some((_, written)) = checker.field(block, schema::FIGURES.name) else {
         return Some(every_figure(procedures));
@@ -287,7 +287,7 @@ struct UnknownFigure<'a, I: IntoIterator<Item = &'static str>> {
 fn figure(
     checker: &mut Checker,
     written: &Expr,
-    procedures: &[Option<Procedure>],
+    procedures: &[(usize, Option<Procedure>)],
 ) -> Option<Figure> {
     let ExprKind::Call { name, arguments } = &written.kind else {
         return match written.kind {
@@ -376,7 +376,7 @@ fn drawn_of(
     kind: FigureKind,
     figure: Span,
     argument: &Expr,
-    procedures: &[Option<Procedure>],
+    procedures: &[(usize, Option<Procedure>)],
 ) -> Option<ProcedureId> {
     let ExprKind::Name(of) = &argument.kind else {
         return checker.fail(FigureWanted {
@@ -411,7 +411,7 @@ fn drawn_of(
     let Some(procedure) = checker.scope.blocks[block].procedure else {
         return checker.fail(ProcedureWanted { name: of, span });
     };
-    let drawn = crate::procedures::facts_of(&procedures.get(procedure.0)?.as_ref()?.kind).figures;
+    let drawn = crate::procedures::facts_of(&procedures.get(procedure.0)?.1.as_ref()?.kind).figures;
     if !drawn.contains(&kind) {
         let words = checker.scope.blocks[block].kind.words();
         let drawn = drawn.iter().map(|kind| kind.name());
@@ -513,12 +513,12 @@ fn together(
     kind: FigureKind,
     drawn: &[ProcedureId],
     arguments: &[Argument],
-    procedures: &[Option<Procedure>],
+    procedures: &[(usize, Option<Procedure>)],
 ) -> Option<()> {
     let of = |procedure: &ProcedureId| {
         procedures
             .get(procedure.0)
-            .and_then(Option::as_ref)
+            .and_then(|(_, procedure)| procedure.as_ref())
             .map(|procedure| &procedure.kind)
     };
     let first = of(&drawn[0])?;

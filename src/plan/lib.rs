@@ -23,6 +23,8 @@ extern crate self as psd_plan;
 #[path = "../testing/plans.rs"]
 pub mod testing;
 
+use std::sync::Arc;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
@@ -172,8 +174,8 @@ impl Plan {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanFile {
     pub name: String,
-    /// The text of the file; base64 of the bytes of a PNG or JPEG picture.
-    pub text: String,
+    /// The text of the file; base64 of the bytes of a PNG or JPEG picture. Every run of a study has it.
+    pub text: Arc<str>,
 }
 
 impl PlanFile {
@@ -186,10 +188,12 @@ impl PlanFile {
     /// The bytes of the file. A text that is not base64 stays as it is.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
-        let decoded = self.is_binary().then(|| STANDARD.decode(&self.text).ok());
+        let decoded = self
+            .is_binary()
+            .then(|| STANDARD.decode(self.text.as_bytes()).ok());
         decoded
             .flatten()
-            .unwrap_or_else(|| self.text.clone().into_bytes())
+            .unwrap_or_else(|| self.text.as_bytes().to_vec())
     }
 }
 

@@ -299,7 +299,10 @@ fn hostile_texts_stay_in_the_run_folder_and_off_the_terminal() {
             .iter()
             .all(|file| !file.path.contains("..") && !file.path.starts_with('/'))
     );
-    assert_eq!(text(&files, "plan/escape.psd"), finished.plan.files[0].text);
+    assert_eq!(
+        text(&files, "plan/escape.psd"),
+        &*finished.plan.files[0].text
+    );
     assert!(!console::verdict_text(&finished.run(), false).contains('\u{1b}'));
 }
 

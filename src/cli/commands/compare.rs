@@ -107,7 +107,11 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
         name,
         summary: serde_json::to_value(Summary::of(&run)).expect("plain numbers and texts"),
         figures: figures::data(&run),
-        plan: replayed.plan.files.first().map(|file| file.text.clone()),
+        plan: replayed
+            .plan
+            .files
+            .first()
+            .map(|file| file.text.to_string()),
     })
 }
 

@@ -52,7 +52,7 @@ pub fn of_this_run(plan: &Plan, date: Option<&str>) -> Provenance {
     let version = env!("CARGO_PKG_VERSION");
     let run_id = run_id(plan, version, date);
     let date = stated_date(plan);
-    let text = plan.files.first().map_or("", |file| file.text.as_str());
+    let text = plan.files.first().map_or("", |file| &*file.text);
     Provenance {
         run_id,
         number: None,
@@ -228,7 +228,10 @@ mod tests {
             files: files
                 .iter()
                 .map(own)
-                .map(|(name, text)| PlanFile { name, text })
+                .map(|(name, text)| PlanFile {
+                    name,
+                    text: text.into(),
+                })
                 .collect(),
             settings: settings.iter().map(own).collect(),
             ..empty_plan()

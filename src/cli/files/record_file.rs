@@ -62,7 +62,10 @@ pub fn device(rig: &dyn Rig) -> Device {
 
 /// Texts of the plan's files, in the header's order.
 pub fn texts(plan: &Plan) -> Vec<String> {
-    plan.files.iter().map(|file| file.text.clone()).collect()
+    plan.files
+        .iter()
+        .map(|file| file.text.to_string())
+        .collect()
 }
 
 /// Checks the disk of a run log that is about to be written.

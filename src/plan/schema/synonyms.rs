@@ -8,6 +8,7 @@ pub const SYNONYMS: &[(&str, &str)] = &[
     ("G", "shear_modulus"),
     ("I", "second_moment"),
     ("L", "length"),
+    ("span", "length"),
     ("c", "damping"),
     ("k", "stiffness"),
     ("m", "mass"),

@@ -70,7 +70,7 @@ pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
         .filter(|(_, file)| PictureKind::of(&file.name).is_none())
         .map(|(named, file)| Attachment {
             name: named.path,
-            text: file.text.clone(),
+            text: file.text.to_string(),
         })
         .collect()
 }

@@ -34,7 +34,7 @@ pub fn wanted(read: &[ResultReference]) -> Wanted {
 pub struct Batch {
     wanted: Wanted,
     /// Number in the block, and plan.
-    runs: Vec<(usize, Plan)>,
+    runs: Vec<(usize, Box<Plan>)>,
     impacts: Vec<BatchedImpact>,
 }
 
@@ -51,13 +51,13 @@ impl Batch {
     /// Adds the impact of a plan. Its files are not kept: a batch has many plans.
     pub fn add(&mut self, number: usize, mut plan: Plan, impact: BatchedImpact) {
         plan.files = Vec::new();
-        self.runs.push((number, plan));
+        self.runs.push((number, Box::new(plan)));
         self.impacts.push(impact);
     }
 
     /// The records, with number and plan; or why a run leaves the batch.
-    pub fn run(self) -> impl Iterator<Item = (usize, Plan, Result<Record, Leaves>)> {
-        let first = self.runs.first().map(|(_, plan)| plan);
+    pub fn run(self) -> impl Iterator<Item = (usize, Box<Plan>, Result<Record, Leaves>)> {
+        let first = self.runs.first().map(|(_, plan)| &**plan);
         let records = first.map_or_else(Vec::new, |plan| {
             let rig = virtual_rig(plan).identity();
             let record = |Ended { procedure, outcome }| Record {

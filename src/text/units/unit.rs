@@ -1,5 +1,8 @@
 //! The unit table, and the parser of a unit token such as `kN/m`, `mm^2` or `N/m^1.5`.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use super::dimension::{Dimension, Exponent};
 
 /// A unit: its factor to SI base units, and its dimension.
@@ -155,27 +158,30 @@ pub enum UnitError {
     TooLarge,
 }
 
-/// Looks up one name, with or without a prefix: `kN`, `mm`, `%`.
-#[must_use]
-pub fn lookup(name: &str) -> Option<Unit> {
-    let exact = UNITS
-        .iter()
-        .find(|unit| unit.symbol == name)
-        .map(|unit| (unit, 1.0));
-    let (unit, scale) = exact.or_else(|| {
-        PREFIXES.iter().find_map(|(prefix, scale)| {
-            let symbol = name.strip_prefix(prefix)?;
-            UNITS
-                .iter()
-                .find(|unit| unit.prefixes && unit.symbol == symbol)
-                .map(|unit| (unit, *scale))
-        })
-    })?;
-    Some(Unit {
+/// Every name of a unit, with and without a prefix. A name of the table is not read as a prefix and another name.
+static NAMES: LazyLock<HashMap<String, Unit>> = LazyLock::new(|| {
+    let of = |unit: &UnitName, scale: f64| Unit {
         factor: scale * unit.factor,
         dimension: unit.dimension,
         zero: unit.zero,
-    })
+    };
+    let exact = UNITS
+        .iter()
+        .map(|unit| (unit.symbol.to_owned(), of(unit, 1.0)));
+    let mut names: HashMap<String, Unit> = exact.collect();
+    for (prefix, scale) in PREFIXES {
+        for unit in UNITS.iter().filter(|unit| unit.prefixes) {
+            let name = format!("{prefix}{}", unit.symbol);
+            names.entry(name).or_insert_with(|| of(unit, *scale));
+        }
+    }
+    names
+});
+
+/// Looks up one name, with or without a prefix: `kN`, `mm`, `%`.
+#[must_use]
+pub fn lookup(name: &str) -> Option<Unit> {
+    NAMES.get(name).copied()
 }
 
 /// Parses a whole unit token, left to right: `N/m*s` is (N/m)·s.

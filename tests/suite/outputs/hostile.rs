@@ -51,7 +51,7 @@ fn run_with(label: &str) -> Finished {
     finished.plan.rig.name = own();
     for file in &mut finished.plan.files {
         file.name = own();
-        file.text = own();
+        file.text = own().into();
     }
     for (requirement, outcome) in finished
         .plan
@@ -275,7 +275,7 @@ fn no_label_is_a_formula_in_a_table() {
 fn no_label_is_another_path_or_another_line_of_the_manifest() {
     for label in labels() {
         let mut finished = run_with(&label);
-        finished.plan.files[0].text = "first".to_owned();
+        finished.plan.files[0].text = "first".into();
         for (at, name) in ["con", "Hit", "hit"].into_iter().enumerate() {
             finished.record.procedures[at].name = name.to_owned();
         }

@@ -1,6 +1,8 @@
 //! Data files that a plan names: `file = "ground/quake.csv"`. In: the string and its span. Out: the file's
 //! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
+use std::sync::Arc;
+
 use crate::check::checker::Checker;
 use crate::check::imports::{MOST_FILES, refused, resolved};
 use crate::check::violations::{FileMissing, TooManyFiles};
@@ -76,7 +78,7 @@ impl Checker<'_> {
         named
             .map(|file| PlanFile {
                 name: file.name.clone(),
-                text: file.text.to_string(),
+                text: Arc::clone(&file.text),
             })
             .collect()
     }

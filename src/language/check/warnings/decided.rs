@@ -1,11 +1,11 @@
-//! Requirements that the plan alone decides: those that no run can meet (E667), and those that every run meets (W732). In: the
+//! Requirements that the plan alone decides: those that no run can meet (E667), and those that every run meets (W732 and W742). In: the
 //! requirements, the procedures, the limits. Out: diagnostics. It knows no run.
 
 use std::collections::BTreeMap;
 
 use crate::check::checker::Checker;
 use crate::check::wording::shown;
-use crate::codes::{E667, W732};
+use crate::codes::{E667, W732, W742};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::{Formula, Function, ProcedureId, ResultPart, ResultReference};
@@ -198,6 +198,10 @@ pub fn check(
         let written = checker.scope.requirements[index].condition;
         let span = written.span;
         for condition in &requirement.conditions {
+            if let Some(diagnostic) = exactly(condition, span) {
+                checker.diagnostics.push(diagnostic);
+                continue;
+            }
             let Some(allowed) = allowed(&condition.test) else {
                 continue;
             };
@@ -319,6 +323,59 @@ fn tests_a_part(
         Assemblies::of(checker.frames.get(&block)?.as_deref()?)
     };
     tested().is_some()
+}
+
+/// A measured value compared with one exact number. `met`: whether every run meets it.
+#[derive(Violation)]
+#[violation(
+    W742,
+    "`{condition}` is {} met: it compares a measured value with one exact number",
+    if met { "always" } else { "never" }
+)]
+#[help(
+    "{}",
+    if met {
+        "write a limit with `<` or `>`".to_owned()
+    } else {
+        format!("write a tolerance, such as `{value} within 5 % of {limit}`, or a limit with `<` or `>`")
+    }
+)]
+struct ExactNumber<'a> {
+    condition: &'a str,
+    met: bool,
+    value: &'a str,
+    limit: &'a str,
+    #[label("an exact number")]
+    span: Span,
+}
+
+/// A condition with `==` or `!=` on a result with a dimension. A count or a ratio can be exact.
+fn exactly(condition: &Condition, span: Span) -> Option<Diagnostic> {
+    let Test::Compare { comparison, .. } = &condition.test else {
+        return None;
+    };
+    let (met, sign) = match comparison {
+        Comparison::Equal => (false, "=="),
+        Comparison::NotEqual => (true, "!="),
+        _ => return None,
+    };
+    let result = read(&condition.value)?;
+    let (left, right) = condition.text.split_once(sign)?;
+    let (value, limit) = if left.contains(result.name) {
+        (left, right)
+    } else {
+        (right, left)
+    };
+    (condition.dimension != Dimension::NUMBER).then(|| {
+        ExactNumber {
+            condition: &condition.text,
+            met,
+            value: value.trim(),
+            limit: limit.trim(),
+            span,
+        }
+        .diagnostic()
+    })
 }
 
 /// The values that a result can have.
