@@ -8,6 +8,8 @@ use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
 use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
@@ -207,9 +209,17 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Lets the operator inspect the specimen; the answer is an event.
+    /// Lets the operator inspect the specimen; the answer is an event. The operator reads which axial loads it carries.
     pub(crate) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
-        self.ask(note, &mut |observer| observer.inspect(note))
+        let loads = self.guard.axial_loads().map(|(storey, force)| {
+            let force = stated(force, Dimension::FORCE);
+            format!(
+                "; AXIAL of storey {} holds {force} in FORCE CONTROL",
+                storey + 1
+            )
+        });
+        let note = loads.fold(note.to_owned(), |note, load| note + &load);
+        self.ask(&note, &mut |observer| observer.inspect(&note))
     }
 
     /// Requests the motion enable of a rig that has not moved yet. A refusal stops nothing, because nothing has begun.

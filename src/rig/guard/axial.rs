@@ -12,7 +12,7 @@ use std::borrow::Cow;
 #[derive(Debug, Default)]
 pub(super) struct AxialAxes {
     axes: Vec<Axial>,
-    /// The readings at rest since they were taken last.
+    /// The readings since they were taken last.
     readings: Vec<AxialReading>,
 }
 
@@ -53,8 +53,8 @@ impl AxialAxes {
         Cow::Owned(targets.iter().copied().chain(own).collect())
     }
 
-    /// Takes the entries of these axes out of a reading; the first that is outside its limits. A reading at rest is kept.
-    pub(super) fn take(&mut self, reading: &mut Reading, at_rest: bool) -> Option<RigFault> {
+    /// Takes the entries of these axes out of a reading, and keeps them if the reading is new; the first that is outside its limits.
+    pub(super) fn take(&mut self, reading: &mut Reading, is_new: bool) -> Option<RigFault> {
         let others = reading.displacement.len().checked_sub(self.axes.len())?;
         let (displacements, forces) = (
             reading.displacement.split_off(others),
@@ -64,7 +64,7 @@ impl AxialAxes {
         let entries = displacements.into_iter().zip(forces);
         for ((index, axial), (displacement, force)) in self.axes.iter().enumerate().zip(entries) {
             let target = axial.target;
-            if at_rest {
+            if is_new {
                 self.readings.push(AxialReading {
                     storey: axial.axis.storey as u64 + 1,
                     wall_time: reading.time,
@@ -139,7 +139,7 @@ impl Guard<'_> {
         loads.filter(|(_, force)| *force != 0.0)
     }
 
-    /// The readings of the axial axes at rest since they were taken last.
+    /// The readings of the axial axes since they were taken last.
     #[must_use]
     pub fn axial_readings(&self) -> &[AxialReading] {
         &self.axial.readings

@@ -263,7 +263,7 @@ impl<'rig> Guard<'rig> {
         let axial = &mut self.axial;
         let moved = motion(self.rig, &mut |mut reading| {
             last_contact = reading.time;
-            let of_axial = axial.take(&mut reading, false);
+            let of_axial = axial.take(&mut reading, true);
             if let Some(fault) = outside(&limits, &own, &reading).or(of_axial) {
                 broken = Some(reading).filter(Reading::is_finite);
                 return Err(fault);

@@ -1,4 +1,4 @@
-//! The history of an axial load: one entry for each reading at rest of each axial axis, during every procedure. In: numbers of a run, SI. It
+//! The history of an axial load: one entry for each reading of each axial axis, during every procedure. In: numbers of a run, SI. It
 //! moves nothing.
 
 /// An axial axis at one reading.

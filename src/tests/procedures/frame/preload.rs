@@ -8,7 +8,7 @@ use crate::tests::testing::{elastic_plan, run_unwatched};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::unload::block::RESIDUAL_DISPLACEMENT;
 use psd_plan::record::{
-    Floors as _, History, Outcome, Record, ShakeHistory, ShakeStep, UnloadStep,
+    EventKind, Floors as _, History, Outcome, Record, ShakeHistory, ShakeStep, UnloadStep,
 };
 use psd_plan::{
     AxialAxis, AxisPlan, Behaviour, Frame, Integrator, Interval, Link, Move, Part, Plan, Preload,
@@ -235,6 +235,21 @@ fn unloading_takes_the_load_off_and_leaves_the_set_of_the_column() {
         numbers.windows(2).all(|pair| pair[0] < pair[1]),
         "{numbers:?}"
     );
+}
+
+/// The operator who inspects the specimen reads that it is loaded.
+#[test]
+fn an_inspection_states_the_axial_load() {
+    let look = || ProcedureKind::Inspect {
+        note: "look".to_owned(),
+    };
+    let procedures = vec![look(), to(0.003), rest(None), look()];
+    let record = after_preload(&preloaded(&column(procedures), 0, 2.5e5, 1.0));
+    let inspections = record.events.iter();
+    let inspections = inspections.filter(|event| event.kind == EventKind::Inspection);
+    let texts: Vec<&str> = inspections.map(|event| event.text.as_str()).collect();
+    let loaded = "look; AXIAL of storey 1 holds 250 kN in FORCE CONTROL";
+    assert_eq!(texts, [loaded, "look"]);
 }
 
 /// The guard holds the rig where the force leaves its tolerance, the displacement its band, or the target the limits of the force.
