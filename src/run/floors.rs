@@ -24,7 +24,20 @@ impl Session<'_> {
 
     /// The readings of the storeys of a frame.
     pub(crate) fn storey_readings(&self) -> Vec<StoreyReadings> {
+        self.readings_with(self.guard.declared_noise())
+    }
+
+    /// The same with the resolution q of the forces as a part of their noise: q/√12.
+    pub(crate) fn resolved_storey_readings(&self) -> Vec<StoreyReadings> {
         let noise = self.guard.declared_noise();
+        let rounding = self.force_resolution / 12_f64.sqrt();
+        self.readings_with(DeclaredNoise {
+            force: noise.force.hypot(rounding),
+            ..noise
+        })
+    }
+
+    fn readings_with(&self, noise: DeclaredNoise) -> Vec<StoreyReadings> {
         self.assemblies().map_or_else(
             || StoreyReadings::of_floors(noise, self.guard.commanded().len()),
             |assemblies| assemblies.readings(noise),

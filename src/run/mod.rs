@@ -139,12 +139,7 @@ impl StepReport {
         }
     }
 
-    /// Sum of the forces of all axes \[N\]: the base shear of a frame.
-    pub fn force(&self) -> f64 {
-        self.axes.iter().map(|axis| axis.force).sum()
-    }
-
-    /// Displacement of the last axis \[m\]: that of the highest floor.
+    /// Displacement of the last axis \[m\].
     pub fn highest(&self) -> f64 {
         self.axes.last().map_or(0.0, |axis| axis.displacement)
     }

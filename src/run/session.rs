@@ -40,6 +40,8 @@ pub(crate) struct Session<'run> {
     /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven like any rig,
     /// and has a watchdog like any rig.
     is_simulated: bool,
+    /// Of the readings of the rig \[N\].
+    pub(super) force_resolution: f64,
     /// None if the rig carries the whole specimen.
     pub(super) hybrid: Option<Hybrid>,
 }
@@ -93,6 +95,7 @@ impl<'run> Session<'run> {
                     attended: false,
                     keep: Keep::default(),
                     is_simulated,
+                    force_resolution: plan.rig.force_resolution(),
                     hybrid: Hybrid::of(plan),
                 })
             }

@@ -10,4 +10,5 @@ pub(crate) mod pace;
 pub(crate) mod question;
 pub(crate) mod real_rig;
 pub(crate) mod screen;
+pub(crate) mod shown;
 pub(crate) mod watch;

@@ -33,7 +33,7 @@ pub struct FrameRun {
     pub time_step: f64,
     /// Largest number of steps.
     pub steps: u64,
-    /// The factor on the force of every storey that is computed; empty for 1.
+    /// The factor on the stiffness of every storey that is computed; empty for 1.
     pub computed_factors: Vec<f64>,
     /// Of each storey, as the run used them.
     pub readings: Vec<StoreyReadings>,

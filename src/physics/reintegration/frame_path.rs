@@ -186,7 +186,7 @@ impl FramePath {
         }
     }
 
-    /// Begins a re-run along the path, with the forces of the computed storeys multiplied by `factors`.
+    /// Begins a re-run along the path, with the stiffnesses of the computed storeys multiplied by `factors`.
     #[must_use]
     pub fn retrace<'a>(&'a self, readings: &'a Perturbation, factors: &[f64]) -> FrameRetrace<'a> {
         let walks = match &self.bends {
@@ -214,7 +214,7 @@ impl FramePath {
             displacement: first.displacement.clone(),
             force: first.force.clone(),
             floors: self.substructures.clone().map(|substructures| Floors {
-                substructures: substructures.with_factors(factors),
+                substructures: substructures.stiffer(factors),
                 is_as_recorded: factors.iter().all(|factor| *factor == 1.0),
                 displacement: Vec::new(),
                 force: Vec::new(),

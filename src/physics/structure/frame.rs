@@ -187,6 +187,21 @@ impl Storey {
 }
 
 impl Frame {
+    /// The storey with the largest part of the strain energy Σ k Δφ²/2 of a mode, from 0, and that fraction. None without storeys.
+    #[must_use]
+    pub fn most_strained(&self, shape: &[f64]) -> Option<(usize, f64)> {
+        let mut below = 0.0;
+        let energies = self.storeys.iter().zip(shape).map(|(storey, floor)| {
+            let drift = floor - std::mem::replace(&mut below, *floor);
+            storey.stiffness * drift * drift
+        });
+        let energies: Vec<f64> = energies.collect();
+        let all: f64 = energies.iter().sum();
+        let largest = energies.into_iter().enumerate();
+        let (storey, energy) = largest.max_by(|one, other| one.1.total_cmp(&other.1))?;
+        Some((storey, energy / all))
+    }
+
     /// A frame of storeys: M diagonal, K tridiagonal with `k_i + k_{i+1}` on its diagonal.
     #[must_use]
     pub fn of_storeys(storeys: Vec<Storey>) -> Self {

@@ -180,6 +180,16 @@ impl Assemblies {
         }
     }
 
+    /// Whether every storey is tested, and all stand on each other: the specimen is the frame, at full scale or not.
+    #[must_use]
+    pub fn is_whole_frame(&self) -> bool {
+        let storeys = self.supports.iter().skip(1);
+        storeys.fold(
+            self.supports.first() == Some(&Support::StrongFloor),
+            |is, it| is && *it == Support::Below,
+        )
+    }
+
     /// Actuators, each with a load cell.
     #[must_use]
     pub fn axes(&self) -> usize {
@@ -499,13 +509,14 @@ impl Substructures {
         }
     }
 
-    /// The same with the forces of all computed storeys multiplied by `factors`, one per storey.
+    /// The same with the stiffnesses of all computed storeys multiplied by `factors`, one per storey.
     #[must_use]
-    pub fn with_factors(mut self, factors: &[f64]) -> Self {
+    pub fn stiffer(mut self, factors: &[f64]) -> Self {
         for (storey, factor) in self.computed.iter_mut().zip(factors) {
-            if let Some(storey) = storey {
-                storey.factor = *factor;
-                storey.shear *= factor;
+            if let Some(storey) = storey
+                && *factor != 1.0
+            {
+                (storey.stiffer, storey.stiffer_from) = (*factor, storey.drift);
             }
         }
         self
@@ -527,8 +538,10 @@ struct ComputedStorey {
     instantaneous: f64,
     /// With its relaxation and its rate dependence \[N\].
     shear: f64,
-    /// On every force.
-    factor: f64,
+    /// The factor on its stiffness: it reaches the same forces at drifts that are smaller by this factor, from `stiffer_from` \[m\] on. Its
+    /// strength is then that of its model.
+    stiffer: f64,
+    stiffer_from: f64,
 }
 
 impl ComputedStorey {
@@ -544,21 +557,27 @@ impl ComputedStorey {
             drift: 0.0,
             instantaneous,
             shear: instantaneous,
-            factor: 1.0,
+            stiffer: 1.0,
+            stiffer_from: 0.0,
         }
+    }
+
+    /// The drift at which its model has the force of the storey at this drift \[m\].
+    fn of_model(&self, drift: f64) -> f64 {
+        self.stiffer_from + self.stiffer * (drift - self.stiffer_from)
     }
 
     /// It moves to this drift \[m\] at constant velocity.
     fn advance(&mut self, drift: f64, seconds: f64) {
-        let velocity = (drift - self.drift) / seconds;
+        let to = self.of_model(drift);
         let from = Deformed {
-            displacement: self.drift,
+            displacement: self.of_model(self.drift),
             force: self.instantaneous,
         };
+        let velocity = (to - from.displacement) / seconds;
         let motion = Motion::even(velocity, seconds);
-        self.instantaneous = self.relaxing.advance(&mut self.model, &motion, from, drift);
-        let force = self.rate.measured_force(self.instantaneous, velocity) + self.relaxing.force();
-        self.shear = self.factor * force;
+        self.instantaneous = self.relaxing.advance(&mut self.model, &motion, from, to);
+        self.shear = self.rate.measured_force(self.instantaneous, velocity) + self.relaxing.force();
         self.drift = drift;
     }
 
@@ -595,6 +614,6 @@ impl ComputedStorey {
                 self.instantaneous = self.model.move_to(self.drift);
             }
         }
-        self.shear = self.factor * self.instantaneous;
+        self.shear = self.instantaneous;
     }
 }

@@ -33,6 +33,15 @@ impl RigPlan {
     pub fn axes(&self) -> Option<usize> {
         self.link.as_real().map(|link| link.axes.len().max(1))
     }
+
+    /// Resolution of a force reading \[N\]; 0 if none is known.
+    #[must_use]
+    pub fn force_resolution(&self) -> f64 {
+        match &self.link {
+            Link::Virtual(link) => link.force_resolution,
+            Link::Real(_) => self.calibration.newtons_per_count.unwrap_or(0.0).abs(),
+        }
+    }
 }
 
 impl RigPlan {
@@ -102,13 +111,13 @@ impl VirtualLink {
     /// declares.
     #[must_use]
     pub fn ideal_of(rig: &RigPlan) -> Self {
+        let force_resolution = rig.force_resolution();
         let (seed, predicted) = match &rig.link {
             Link::Virtual(link) => {
                 let Self {
                     seed,
                     noise,
                     resolution,
-                    force_resolution,
                     ..
                 } = *link;
                 (
@@ -124,7 +133,6 @@ impl VirtualLink {
                 let axes = || (0..link.axes.len().max(1)).map(|axis| link.readings_of(axis));
                 let noise = axes().map(|rules| rules.noise).fold(0.0, f64::max);
                 let resolution = axes().map(|rules| rules.resolution).fold(0.0, f64::max);
-                let force_resolution = rig.calibration.newtons_per_count.unwrap_or(0.0).abs();
                 (
                     0,
                     ReadingErrors {

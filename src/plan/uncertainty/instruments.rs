@@ -172,16 +172,16 @@ fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> ReadingE
             predicted: Some(errors),
             ..
         }) => (errors.noise, errors.resolution, errors.force_resolution),
-        Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),
+        Link::Virtual(_) => (
+            declared.force,
+            declared.resolution,
+            plan.rig.force_resolution(),
+        ),
         Link::Real(link) => {
             let ReadingRules {
                 noise, resolution, ..
             } = link.readings_of(axis);
-            (
-                noise,
-                resolution,
-                plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs(),
-            )
+            (noise, resolution, plan.rig.force_resolution())
         }
     };
     ReadingErrors {

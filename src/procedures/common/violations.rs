@@ -40,6 +40,8 @@ pub struct UnstableStep {
     pub integrator: Integrator,
     pub step: f64,
     pub limit: f64,
+    /// The computed storey that dictates the limit of explicit Newmark, from 0.
+    pub computed: Option<usize>,
 }
 
 impl Violation for UnstableStep {
@@ -51,6 +53,7 @@ impl Violation for UnstableStep {
             integrator,
             step,
             limit,
+            computed,
         } = self;
         let time = |value| shown(value, Dimension::TIME);
         let (step, longest) = (time(step), time(limit));
@@ -65,7 +68,13 @@ impl Violation for UnstableStep {
             format!("time step {step} exceeds the stability limit {longest}: {why}"),
         )
         .at(span, format!("{step}, stable up to {longest}"))
-        .help("write `time_step = critical / 20`; `allow_unstable = true` permits the step")
+        .help(computed.map_or_else(
+            || "write `time_step = critical / 20`; `allow_unstable = true` permits the step".to_owned(),
+            |storey| {
+                let storey = storey + 1;
+                format!("the computed storey {storey} dictates the limit: write `integrator = alpha_os(alpha: -0.05)`, or `time_step = critical / 20`")
+            },
+        ))
     }
 }
 

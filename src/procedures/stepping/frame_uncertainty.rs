@@ -195,7 +195,7 @@ impl<'run> FrameUncertainty<'run> {
         )
     }
 
-    /// The factor on the force of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is.
+    /// The factor on the stiffness of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is.
     pub fn computed_factors(&self, moved: &Frame) -> Vec<f64> {
         let storeys = self.frame.map_or(&[][..], |frame| &frame.storeys);
         if storeys.iter().all(|storey| storey.part != Part::Computed) {

@@ -227,7 +227,7 @@ impl StifferSprings {
             gravity: 0.0,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
-            noise: noise_of(&start.readings[0]),
+            noise: noise_of(&start.resolved[0]),
             moving: plan.mode != Mode::StepAndPause,
         };
         Self::of(vec![(
@@ -269,7 +269,7 @@ impl StifferSprings {
                 moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
-                noise: noise_of(&start.readings[storey]),
+                noise: noise_of(&start.resolved[storey]),
             };
             (
                 format!("storey {}", storey + 1),

@@ -127,6 +127,8 @@ pub(crate) struct Start {
     pub reading: Reading,
     /// Of each storey.
     pub readings: Vec<StoreyReadings>,
+    /// The same with the resolution of the forces as a part of their noise.
+    pub resolved: Vec<StoreyReadings>,
 }
 
 impl Start {

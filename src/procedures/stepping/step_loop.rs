@@ -84,6 +84,7 @@ pub(crate) fn run<S: Stepped>(
         commanded,
         reading,
         readings: session.storey_readings(),
+        resolved: session.resolved_storey_readings(),
     };
     let (mut stepped, stiffer) = begin(&start)?;
     let monitors = Monitors::new(

@@ -186,6 +186,7 @@ impl Column {
 /// A picture with its caption, numbered from 1.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Figure {
+    /// From 1, given when the report is complete.
     pub number: usize,
     pub caption: Text,
     /// Its content in words, for a reader who cannot see it.

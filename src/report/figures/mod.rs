@@ -9,6 +9,7 @@ mod draw;
 mod plain;
 pub(crate) mod points;
 mod raster;
+pub(crate) mod structure;
 mod together;
 mod vector;
 

@@ -151,7 +151,19 @@ fn body(source: &Source<'_>) -> Vec<Block> {
         }
         body.append(&mut blocks);
     }
+    number_figures(&mut body);
     body
+}
+
+/// Figures have numbers from 1 in their order.
+fn number_figures(body: &mut [Block]) {
+    let figures = body.iter_mut().filter_map(|block| match block {
+        Block::Figure(figure) => Some(figure),
+        _ => None,
+    });
+    for (number, figure) in (1..).zip(figures) {
+        figure.number = number;
+    }
 }
 
 const fn name_of(annex: Annex) -> &'static str {

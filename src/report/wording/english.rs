@@ -340,6 +340,7 @@ wording! {
 
     mod conditions {
         TITLE = "Conditions";
+        STRUCTURE = "The structure: tested storeys (solid), computed storeys (dashed), floors with their masses, axes of the rig.";
         NOT_MEASURED = " · stated, not measured";
         FROM_A_FILE = " · from a file of the plan";
         LIMITS = "Limits";

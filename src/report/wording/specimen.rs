@@ -6,7 +6,7 @@ use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::substructures::{Assemblies, on_the_rig};
 use psd_plan::scaled::{at_scale, numbers_on_the_rig, storeys};
 use psd_plan::schema::behaviours;
 use psd_plan::{
@@ -14,7 +14,7 @@ use psd_plan::{
     Mechanism, Part, Pinching, Plan, Portal, Sections, Unloading,
 };
 use psd_text::units::Dimension;
-use psd_text::units::display::significant;
+use psd_text::units::display::{significant, stated};
 
 /// Prints a stated number, or one that follows from stated numbers.
 pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
@@ -67,6 +67,52 @@ pub fn substructures(frame: &Frame) -> Option<String> {
     } else {
         format!("{tested}; {} computed", storeys(&computed))
     })
+}
+
+/// A storey of a drawing.
+pub struct DrawnStorey {
+    /// From 1.
+    pub number: usize,
+    /// The axis that moves its floor, from 1; None for a computed storey.
+    pub axis: Option<usize>,
+    /// `tested at scale 0.5, on the strong floor`, or `computed`.
+    pub part: String,
+    /// `600 kN/m`; of a specimen with another stiffness on the rig also that one.
+    pub stiffness: String,
+}
+
+/// The storeys of a frame of which a part is computed, or a specimen has a scale, from the ground up.
+#[must_use]
+pub fn drawn_storeys(frame: &Frame) -> Vec<DrawnStorey> {
+    let stiffness = |value| stated(value, Dimension::STIFFNESS);
+    let mut tested = on_the_rig(frame).zip(1..);
+    let storeys = frame.storeys.iter().zip(1..);
+    let drawn = storeys.map(|(storey, number)| {
+        let own = stiffness(storey.stiffness);
+        let Part::Tested { scale, .. } = storey.part else {
+            return DrawnStorey {
+                number,
+                axis: None,
+                part: "computed".to_owned(),
+                stiffness: own,
+            };
+        };
+        let axis = tested.next();
+        let stands = axis.as_ref().is_some_and(|((_, stands), _)| *stands);
+        let base = if stands { ", on the strong floor" } else { "" };
+        let on_the_rig = stiffness(scale.stiffness_on_the_rig(storey.stiffness));
+        DrawnStorey {
+            number,
+            axis: axis.map(|(_, axis)| axis),
+            part: format!("tested{}{base}", at_scale(&scale)),
+            stiffness: if on_the_rig == own {
+                own
+            } else {
+                format!("{own}; {on_the_rig} on the rig")
+            },
+        }
+    });
+    drawn.collect()
 }
 
 /// P/(K h) of each storey, from the ground up; None without weights on the floors.

@@ -1,16 +1,24 @@
 //! Runs of a study, one by one: each has the results of the run that is recorded, to the last bit, and a step allocates nothing.
 
+use super::Simulation;
 use super::alone::simulate;
 use super::tests::folder;
 use crate::check::{Options, check};
 use crate::run::{Keep, Unwatched, run_with};
+use crate::study::answers::setting;
+use crate::study::metadata::column;
+use crate::study::testing::{Studied, checked, variation};
 use crate::tests::testing::{elastic_plan, impact, struck_frame};
 use crate::verdict;
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::Source;
 use psd_plan::formula::{Formula, ResultValue};
 use psd_plan::record::{History, NamedResult, Outcome, Record};
+use psd_plan::study::{Input, Variation};
 use psd_plan::{DecisionRule, Interval, Plan, ProcedureKind};
 use psd_rig::{Reading, Rig, RigFault, VirtualRig};
 use psd_testing::forwarded;
+use psd_text::units::Dimension;
 
 /// A virtual rig whose calls are recorded one by one, as in `psd run`.
 struct Recorded(VirtualRig);
@@ -128,6 +136,77 @@ fn a_run_of_a_study_is_the_recorded_run() {
         }
     }
     assert!(completed >= 20 && stopped >= 10, "{completed}, {stopped}");
+}
+
+/// The weight and the height of a floor and the scale of a specimen, of a frame whose upper storey is computed. Run i is the recorded run
+/// of the plan with its values.
+#[test]
+fn a_study_varies_a_weight_a_height_and_a_scale() {
+    let text = "param load = 60 kN\nparam rise = 3 m\nparam lambda = 0.5\n\
+        specimen frame { storeys = [\n\
+        storey(mass: 2 t, height: rise, gravity: load, part: tested(scale: lambda, represents: 2), stiffness: 300 kN/m,\n\
+        behaviour: bilinear(stiffness: 150 kN/m * lambda, yield_force: 0.5 kN * (lambda / 0.5) ^ 2, post_yield_ratio: 10 %)),\n\
+        storey(mass: 1.5 t, height: 3 m, gravity: 40 kN, part: computed, behaviour: bilinear(200 kN/m, 3 kN, 10 %)) ] }\n\
+        striker hammer { mass = 300 kg\nvelocity = 3 m/s }\n\
+        impact hit { striker = hammer\nstorey = 2\nduration = 0.5 s\ntime_step = 5 ms\nintegrator = alpha_os(alpha: -0.05) }\n\
+        require \"moves\" hit.max_base_shear > 1 N and hit.max_displacement > 1 mm";
+    let varied = [
+        ("load", Dimension::FORCE, 60e3),
+        ("rise", Dimension::LENGTH, 3.0),
+        ("lambda", Dimension::NUMBER, 0.5),
+    ];
+    let of_input = |(name, dimension, nominal): (&str, Dimension, f64)| Input {
+        name: name.to_owned(),
+        dimension,
+        text: String::new(),
+        nominal,
+        is_record: false,
+    };
+    let scattered = |(_, _, nominal): (&str, Dimension, f64)| {
+        Source::Distribution(Distribution::normal(nominal, Spread::Cv(0.05)).unwrap())
+    };
+    let studied = Studied::varied(
+        text,
+        20,
+        Variation {
+            inputs: varied.map(of_input).into(),
+            sources: varied.map(scattered).into(),
+            correlations: Vec::new(),
+            ..variation()
+        },
+    );
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    let rows = simulation.block(0..20);
+    let mut shears = Vec::new();
+    for row in &rows {
+        let settings = definition.inputs.iter().zip(&row.inputs);
+        let settings: Vec<(String, String)> = settings
+            .map(|(input, value)| {
+                let setting = setting(&column(input), *value);
+                let (name, value) = setting.split_once('=').unwrap();
+                (name.to_owned(), value.trim_matches('"').to_owned())
+            })
+            .collect();
+        let (_, plan) = checked(text, &settings);
+        let storey = &plan.specimens[0].frame.as_ref().unwrap().storeys[0];
+        let values = [
+            storey.gravity,
+            storey.height.unwrap(),
+            storey.part.scale().displacement,
+        ];
+        assert_eq!(values, row.inputs[..]);
+        assert_eq!(compare(&plan, &format!("{settings:?}")), Outcome::Completed);
+        let kept = simulation.readout().read(&plan, &recorded(&plan));
+        let bits = |results: &[Option<f64>]| -> Vec<Option<u64>> {
+            results.iter().map(|it| it.map(f64::to_bits)).collect()
+        };
+        assert_eq!(bits(&kept.results), bits(&row.results), "{settings:?}");
+        shears.push(row.results[0].unwrap());
+    }
+    shears.sort_by(f64::total_cmp);
+    shears.dedup();
+    assert_eq!(shears.len(), rows.len(), "the inputs change the results");
 }
 
 /// Allocations of a run of a study.

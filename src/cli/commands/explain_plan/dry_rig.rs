@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::operator::screen::curve::Curves;
+use crate::operator::shown::Shown;
 use psd::run::{self, Inspection, Observer, StepReport};
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::record::Record;
@@ -102,6 +103,7 @@ impl Watched {
             &mut rig,
             &mut Listener {
                 reaches: Rc::clone(&reaches),
+                shown: Shown::of(plan),
             },
         );
         let mut noted = reaches.borrow().clone();
@@ -259,6 +261,7 @@ impl Rig for Watched {
 /// Receives the name of the running procedure. It continues at every inspection, because there is no specimen to inspect.
 struct Listener {
     reaches: Rc<RefCell<Vec<Reach>>>,
+    shown: Shown,
 }
 
 impl Observer for Listener {
@@ -277,7 +280,7 @@ impl Observer for Listener {
         if let Some(reach) = self.reaches.borrow_mut().last_mut() {
             reach.steps = reach.steps.max(report.step);
             reach.integrates = report.axes.iter().any(|axis| axis.velocity.is_some());
-            reach.curves.push(report);
+            reach.curves.push(report, &self.shown);
         }
     }
 

@@ -305,9 +305,11 @@ impl<'a> DryRun<'a> {
                 );
                 let predicted = tracking::shake_rows(self.plan, shake, history);
                 let energy = tracking::energy(lagging.as_ref(), index);
+                let frame = self.plan.specimens[shake.specimen].frame.as_ref();
+                let steps = shake::steps(history, frame, shake.stepping.integrator);
                 section(
                     &format!("{}, shake", procedure.name),
-                    [shake::steps(history), predicted, energy].concat(),
+                    [steps, predicted, energy].concat(),
                 );
             }
         }

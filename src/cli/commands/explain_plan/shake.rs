@@ -1,8 +1,10 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
-use psd_physics::structure::widen;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::{Damping, widen};
 use psd_plan::record::{Floors, Modes, ShakeHistory};
+use psd_plan::{Frame, Integrator, Part};
 use psd_text::units::Dimension;
 use psd_text::units::display::{digits, join, readable, significant, unit};
 
@@ -84,8 +86,36 @@ pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
     rows
 }
 
+/// The computed storey that dictates the critical step, and the limit of explicit Newmark.
+fn dictated(history: &ShakeHistory, frame: &Frame, integrator: Integrator) -> Option<String> {
+    let highest = history.modes.as_ref()?.shapes.last()?;
+    let (storey, fraction) = frame.most_strained(highest)?;
+    if frame.storeys[storey].part != Part::Computed {
+        return None;
+    }
+    let storey = storey + 1;
+    let fraction = significant(100.0 * fraction, 2);
+    let dictated = format!(
+        "; the computed storey {storey} dictates it, with {fraction} % of the strain energy of the highest mode"
+    );
+    if integrator != Integrator::Explicit {
+        return Some(dictated);
+    }
+    let limit = FrameProperties::of(frame, &Damping::None)
+        .ok()?
+        .longest_stable_step(integrator, Some(frame));
+    let limit = readable(limit, Dimension::TIME);
+    Some(format!(
+        "{dictated}; `explicit` is stable up to {limit}, `alpha_os` at every step"
+    ))
+}
+
 /// The time step and the predicted peaks.
-pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
+pub fn steps(
+    history: &ShakeHistory,
+    frame: Option<&Frame>,
+    integrator: Integrator,
+) -> Vec<Vec<String>> {
     if history.steps.is_empty() {
         return Vec::new();
     }
@@ -100,7 +130,10 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     let mut rows = vec![
         row(
             "critical time step",
-            readable(history.critical_time_step, Dimension::TIME),
+            readable(history.critical_time_step, Dimension::TIME)
+                + &frame
+                    .and_then(|frame| dictated(history, frame, integrator))
+                    .unwrap_or_default(),
         ),
         row(
             "chosen time step",

@@ -1,34 +1,17 @@
 //! The structure of a hybrid test, drawn: floors from the highest down, storeys that are tested or computed, axes, scales. In: a frame. Out:
 //! rows of text.
 
-use psd_physics::structure::substructures::on_the_rig;
-use psd_plan::scaled::at_scale;
-use psd_plan::{Frame, Part};
-use psd_text::units::Dimension;
-use psd_text::units::display::stated;
+use psd::report::wording::specimen::drawn_storeys;
+use psd_plan::Frame;
 
 /// A row for each floor with its axis, and one for each storey below it: `║` is on the rig, `┆` is computed.
 pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
-    let mut tested = on_the_rig(frame).zip(1..);
-    let storeys = frame.storeys.iter().zip(1..);
-    let storeys = storeys.map(|(storey, number)| {
-        let stiffness = |value| stated(value, Dimension::STIFFNESS);
-        let own = stiffness(storey.stiffness);
-        let (column, mover, text) = match storey.part {
-            Part::Computed => ("┆", String::new(), format!("computed, {own}")),
-            Part::Tested { scale, .. } => {
-                let ((_, stands), axis) = tested.next().unwrap_or(((storey, true), 0));
-                let base = if stands { ", on the strong floor" } else { "" };
-                let on_the_rig = stiffness(scale.stiffness_on_the_rig(storey.stiffness));
-                let text = format!("tested{}{base}, {own}", at_scale(&scale));
-                let text = if on_the_rig == own {
-                    text
-                } else {
-                    format!("{text}; {on_the_rig} on the rig")
-                };
-                ("║", format!("◄─ axis {axis}"), text)
-            }
+    let storeys = drawn_storeys(frame).into_iter().map(|drawn| {
+        let (column, mover) = match drawn.axis {
+            None => ("┆", String::new()),
+            Some(axis) => ("║", format!("◄─ axis {axis}")),
         };
+        let (number, text) = (drawn.number, format!("{}, {}", drawn.part, drawn.stiffness));
         let joint = if number == frame.storeys.len() {
             '┬'
         } else {
@@ -50,7 +33,7 @@ pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use psd_plan::{Behaviour, Scale, Storey};
+    use psd_plan::{Behaviour, Part, Scale, Storey};
 
     #[test]
     fn storeys_of_one_assembly_stand_on_the_strong_floor_together() {

@@ -145,7 +145,7 @@ mod tests {
             raw: Vec::new(),
         };
         assert_eq!(line(&reading), "0.1,0.001,-0.3\n");
-        assert_eq!(step(3, &reading).force(), -0.3);
+        assert_eq!(step(3, &reading).axes[0].force, -0.3);
         assert_eq!(header(1), "time_s,displacement_m,force_n\n");
         assert_eq!(
             header(2),

@@ -1,6 +1,7 @@
 //! A curve that is drawn while it grows. In: any number of points. Out: a bounded number of them, evenly thinned, with the newest one. It
 //! knows no unit.
 
+use crate::operator::shown::Shown;
 use psd::run::StepReport;
 
 /// Largest number of points kept; a terminal has fewer dots.
@@ -47,10 +48,11 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Adds a step. For several floors: the highest one, and the base shear over the storey drift of the lowest storey.
-    pub fn push(&mut self, report: &StepReport) {
+    /// Adds the numbers of a step that are shown.
+    pub fn push(&mut self, report: &StepReport, shown: &Shown) {
         self.displacement.push(report.time, report.highest());
-        self.force.push(report.axes[0].displacement, report.force());
+        self.force
+            .push(shown.across(report), shown.force_of(report));
     }
 }
 

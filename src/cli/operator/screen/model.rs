@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use super::curve::Curves;
 use crate::commands::explain_plan::dry_rig::Reach;
+use crate::operator::shown::Shown;
 use psd::run::StepReport;
 use psd_plan::record::UNLOADING;
 use psd_plan::record::{Event, EventKind};
@@ -21,14 +22,6 @@ const MOST_EVENTS: usize = 32;
 /// The procedure without motion.
 pub const INSPECT: &str = "inspect";
 
-/// What follows displacements and forces of steps: ` on the rig` if those of the prototype are others.
-pub fn of_rig(plan: &Plan) -> &'static str {
-    match plan.specimens_at_scale() {
-        Some(_) => " on the rig",
-        None => "",
-    }
-}
-
 /// All drawn data except the dialogue with the operator.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -36,8 +29,8 @@ pub struct Model {
     pub rig: String,
     pub simulated: bool,
     pub limits: Limits,
-    /// What follows a displacement and a force: [`of_rig`].
-    pub of_rig: &'static str,
+    /// The displacement and the force of a step that are drawn.
+    pub shown: Shown,
     /// The procedure that runs, or that ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
@@ -134,7 +127,7 @@ impl Model {
             rig: plan.rig.name.clone(),
             simulated,
             limits: plan.limits,
-            of_rig: of_rig(plan),
+            shown: Shown::of(plan),
             procedure: None,
             last: None,
             study: None,
@@ -158,7 +151,7 @@ impl Model {
 
     /// `force`, or `force on the rig`.
     pub fn on_the_rig(&self, word: &str) -> String {
-        format!("{word}{}", self.of_rig)
+        format!("{word}{}", self.shown.of_rig)
     }
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
@@ -194,7 +187,7 @@ impl Model {
                 *falling = Some(to.command < from.command);
             }
         }
-        self.curves.push(report);
+        self.curves.push(report, &self.shown);
         self.last = Some(report.clone());
     }
 

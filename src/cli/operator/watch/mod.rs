@@ -11,8 +11,8 @@ use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
 use super::pace::{Pace, Part};
 use super::question::{self, After, Question, QuestionKind, Stay};
-use super::screen::model::of_rig;
 use super::screen::{self, Screen};
+use super::shown::Shown;
 use crate::args::ScreenForm;
 use crate::commands::explain_plan::dry_rig::Reach;
 use crate::settings::{Settings, today};
@@ -123,7 +123,7 @@ impl Watcher {
         let stop_request = signals.stop_request().clone();
         let operator = attendance.operator_of(plan);
         let form = attendance.screen;
-        let of_rig = of_rig(plan);
+        let shown = Shown::of(plan);
         let face = match form {
             Some(ScreenForm::Never) => Face::Lines(Lines::silent()),
             Some(ScreenForm::Full) | None if drawn && can_draw(settings) => {
@@ -138,9 +138,9 @@ impl Watcher {
                 ))
             }
             None if drawn && settings.stderr_terminal => {
-                Face::Bar(Bar::new(settings.unicode, of_rig))
+                Face::Bar(Bar::new(settings.unicode, shown))
             }
-            _ => Face::Lines(Lines::new(of_rig)),
+            _ => Face::Lines(Lines::new(shown)),
         };
         let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
             (true, ..) => Asking::Yes(operator),

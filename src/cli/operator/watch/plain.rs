@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::operator::pace::clock;
+use crate::operator::shown::Shown;
 use crate::output::print_message;
 use psd::run::{Observer, StepReport};
 use psd_plan::record::IS_OUTSIDE;
@@ -19,15 +20,14 @@ use psd_text::units::display::readable;
 pub struct Bar {
     counted: ProgressStyle,
     endless: ProgressStyle,
-    shown: Option<ProgressBar>,
-    /// What follows displacements and forces.
-    of_rig: &'static str,
+    drawn: Option<ProgressBar>,
+    shown: Shown,
     /// The time left of the run, if it is known.
     pub left: Option<Duration>,
 }
 
 impl Bar {
-    pub fn new(unicode: bool, of_rig: &'static str) -> Self {
+    pub fn new(unicode: bool, shown: Shown) -> Self {
         let template = |text| {
             ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar())
         };
@@ -36,15 +36,15 @@ impl Bar {
             // The style with a known number of steps, and without one.
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
-            shown: None,
-            of_rig,
+            drawn: None,
+            shown,
             left: None,
         }
     }
 
     /// Removes the bar from the terminal.
     pub fn clear(&mut self) {
-        if let Some(bar) = self.shown.take() {
+        if let Some(bar) = self.drawn.take() {
             bar.finish_and_clear();
         }
     }
@@ -61,17 +61,16 @@ impl Observer for Bar {
         let bar =
             ProgressBar::with_draw_target(steps, ProgressDrawTarget::stderr()).with_style(style);
         bar.set_prefix(format!("{name}, {keyword}"));
-        self.shown = Some(bar);
+        self.drawn = Some(bar);
     }
 
     fn step_done(&mut self, report: &StepReport) {
         let step = report.step;
-        let Some(bar) = &self.shown else { return };
+        let Some(bar) = &self.drawn else { return };
         bar.set_position(step);
         // Most steps are never drawn: the text is made for some only.
         if step.is_multiple_of(16) {
-            // For several axes the highest floor and the base shear are the most useful.
-            let force = report.force();
+            let force = self.shown.force_of(report);
             let (time, displacement) = (
                 readable(report.time, Dimension::TIME),
                 readable(report.highest(), Dimension::LENGTH),
@@ -79,14 +78,14 @@ impl Observer for Bar {
             bar.set_message(format!(
                 "{time}  {displacement}  {}{}{}",
                 readable(force, Dimension::FORCE),
-                self.of_rig,
+                self.shown.of_rig,
                 time_left(self.left)
             ));
         }
     }
 
     fn studying(&mut self, done: usize, of: usize) {
-        if let Some(bar) = &self.shown {
+        if let Some(bar) = &self.drawn {
             bar.set_message(format!("uncertainty: {done} of {of} runs re-integrated"));
         }
     }
@@ -112,8 +111,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 pub struct Lines {
     /// Only events.
     silent: bool,
-    /// What follows displacements and forces.
-    of_rig: &'static str,
+    shown: Shown,
     name: String,
     keyword: String,
     steps: Option<u64>,
@@ -130,10 +128,9 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// `of_rig` follows displacements and forces.
-    pub fn new(of_rig: &'static str) -> Self {
+    pub fn new(shown: Shown) -> Self {
         Self {
-            of_rig,
+            shown,
             ..Self::default()
         }
     }
@@ -152,13 +149,16 @@ impl Lines {
         let of = of.map_or_else(String::new, |steps| {
             format!(" of {}", steps.max(report.step))
         });
+        let names = self.shown.names(report.axes.len());
         format!(
-            "  {}: step {}{of}, X {}, R {}{}{}\n",
+            "  {}: step {}{of}, {} {}, {} {}{}{}\n",
             escape(&self.name),
             report.step,
+            names.displacement,
             readable(report.highest(), Dimension::LENGTH),
-            readable(report.force(), Dimension::FORCE),
-            self.of_rig,
+            names.force,
+            readable(self.shown.force_of(report), Dimension::FORCE),
+            self.shown.of_rig,
             time_left(self.left)
         )
     }
@@ -175,7 +175,7 @@ impl Lines {
             let _ = write!(
                 text,
                 ", {step} {steps}, largest X {displacement}, largest R {force}{}",
-                self.of_rig
+                self.shown.of_rig
             );
         }
         if let Some(reading) = &self.stopped_by {
@@ -190,7 +190,7 @@ impl Observer for Lines {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         *self = Self {
             silent: self.silent,
-            of_rig: self.of_rig,
+            shown: std::mem::take(&mut self.shown),
             name: name.to_owned(),
             keyword: keyword.to_owned(),
             steps,

@@ -11,7 +11,7 @@ use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::storeys_of;
 use psd_plan::formula::NoResults;
 use psd_plan::schema::{frames, methods, specimen};
-use psd_plan::{Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
+use psd_plan::{Frame, Integrator, MOST_STEPS, Mode, Part, ShakeDamping, Stepping, steps_in};
 use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
 
@@ -123,6 +123,7 @@ pub fn check(
                 integrator: stepping.integrator,
                 step,
                 limit,
+                computed: dictated_by(frame, &properties, stepping.integrator),
             }
             .diagnostic()
         });
@@ -168,4 +169,16 @@ fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<
         let fields = [frames::DAMPING_RATIO.name, specimen::STOREYS.name];
         warn_of_damping_twice(checker, block, steps.specimen, fields);
     }
+}
+
+/// The computed storey that dictates the longest step of explicit Newmark, from 0.
+fn dictated_by(
+    frame: &Frame,
+    properties: &FrameProperties,
+    integrator: Integrator,
+) -> Option<usize> {
+    let highest = properties.modes.shapes.last()?;
+    let (storey, _) = frame.most_strained(highest)?;
+    let computed = frame.storeys[storey].part == Part::Computed;
+    (computed && integrator == Integrator::Explicit).then_some(storey)
 }

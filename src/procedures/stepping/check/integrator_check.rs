@@ -219,6 +219,7 @@ pub fn stable(
             integrator: impact.stepping.integrator,
             step,
             limit,
+            computed: None,
         }
         .diagnostic()
     });

@@ -22,7 +22,7 @@ const WIDEST_NAMES: f64 = 330.0;
 const BOTTOM: f64 = 372.0;
 const LEGEND_TOP: f64 = 20.0;
 const LEGEND_LINE: f64 = 21.0;
-const INK: Colour = (40, 40, 40);
+pub(super) const INK: Colour = (40, 40, 40);
 const GRID: Colour = (232, 232, 232);
 const LIMIT_INK: Colour = (150, 20, 20);
 /// Points closer than this are dropped, reference pixels: half a pixel is not visible.
@@ -83,7 +83,7 @@ fn left_edge(chart: &Chart) -> f64 {
     left.min(WIDEST_NAMES)
 }
 
-fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
+pub(super) fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
     Lettering {
         size,
         bold: false,

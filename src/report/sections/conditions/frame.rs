@@ -1,9 +1,10 @@
 //! A frame and its ground motion, as a report describes them. In: the plan. Out: blocks.
 
 use super::described;
-use crate::report::document::{Block, Column, Table, Text};
+use crate::report::document::{Block, Column, Figure, Table, Text};
+use crate::report::figures::structure;
 use crate::report::number::{self, percent};
-use crate::report::wording::specimen as specimen_text;
+use crate::report::wording::{conditions as wording, specimen as specimen_text};
 use psd_plan::scaled::at_scale;
 use psd_plan::{Frame, Ground, Part};
 use psd_text::units::Dimension;
@@ -32,6 +33,14 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         return;
     }
     let is_hybrid = substructures.is_some();
+    if is_hybrid {
+        body.push(Block::Figure(Figure {
+            number: 0,
+            caption: wording::STRUCTURE.into(),
+            description: structure::description(frame).into(),
+            svg: structure::svg(frame),
+        }));
+    }
     let behaviour = if is_scaled {
         "Behaviour, on the rig if tested"
     } else if is_hybrid {

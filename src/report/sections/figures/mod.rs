@@ -1,4 +1,4 @@
-//! The figures of a report, numbered from 1: the one that shows the main results on the second page, the others in an annex. In: drawn
+//! The figures of a report: the one that shows the main results on the second page, the others in an annex. In: drawn
 //! figures with their captions. Out: blocks.
 
 mod photos;
@@ -14,7 +14,7 @@ use psd_plan::FigureKind;
 /// The main figure.
 pub(super) fn headline(source: &Source<'_>, body: &mut Vec<Block>) {
     if let Some(figure) = main(source).and_then(|index| source.figures.get(index)) {
-        body.push(block(figure, 1));
+        body.push(block(figure));
     }
 }
 
@@ -49,8 +49,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
             left += 1;
         }
     }
-    let blocks = printed.into_iter().enumerate();
-    body.extend(blocks.map(|(number, figure)| block(figure, number + 2)));
+    body.extend(printed.into_iter().map(block));
     match left {
         0 => {}
         1 => body.push(Block::note(wording::ONE_MORE)),
@@ -85,9 +84,9 @@ fn main(source: &Source<'_>) -> Option<usize> {
     response.or_else(|| source.figures.iter().position(is_own))
 }
 
-fn block(figure: &Drawn, number: usize) -> Block {
+fn block(figure: &Drawn) -> Block {
     Block::Figure(Figure {
-        number,
+        number: 0,
         caption: figure.caption.as_str().into(),
         description: figure.description.as_str().into(),
         svg: figure.svg.clone(),

@@ -7,8 +7,8 @@ use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
     Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Part, Plan, Procedure,
-    ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
-    Until, WatchedHold, WatchedModel, ZeroAfter,
+    ProcedureKind, Scale, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test,
+    Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use psd_text::units::Dimension;
 
@@ -111,12 +111,31 @@ pub(super) fn shaken(mode: Mode) -> Plan {
     plan
 }
 
-/// The same with the lower storey computed.
+/// The same with weights on the floors, the lower storey computed, and the upper one at half scale.
 pub(super) fn shaken_hybrid(mode: Mode) -> Plan {
     let mut plan = shaken(mode);
     let frame = plan.specimens[0].frame.as_ref().unwrap();
-    let lower = |storeys: &mut [Storey]| storeys[0].part = Part::Computed;
-    plan.specimens[0].frame = Some(frame.with(lower));
+    let scale = Scale {
+        displacement: 0.5,
+        force: 0.25,
+        represents: 2.0,
+    };
+    let hybrid = |storeys: &mut [Storey]| {
+        for storey in storeys.iter_mut() {
+            (storey.height, storey.gravity) = (Some(3.0), 4e5);
+        }
+        storeys[0].part = Part::Computed;
+        storeys[1].part = Part::Tested {
+            apart: false,
+            scale,
+        };
+        storeys[1].behaviour = Behaviour::Bilinear {
+            stiffness: scale.stiffness_on_the_rig(2e6),
+            yield_force: 0.0002 * 2e6 / scale.forces(),
+            post_yield_ratio: 0.1,
+        };
+    };
+    plan.specimens[0].frame = Some(frame.with(hybrid));
     plan
 }
 
@@ -278,7 +297,7 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
         ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
         (
-            "shake with a computed storey",
+            "shake with a computed storey, a scale and weights",
             shaken_hybrid(Mode::StepAndPause),
         ),
         ("shake under an axial load", shaken_under_a_load()),

@@ -54,7 +54,7 @@ fn a_shake_of_two_floors() {
     );
     killed("shake");
     killed("shake without a stop");
-    killed("shake with a computed storey");
+    killed("shake with a computed storey, a scale and weights");
 }
 
 #[test]

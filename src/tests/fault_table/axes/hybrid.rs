@@ -1,8 +1,8 @@
 //! A frame of which the rig carries two storeys, each on the strong floor: the storey between them is computed. A run on the emulated rig
 //! equals the virtual run, and the pre-test check measures each assembly alone.
 
-use super::held;
 use super::two_axes::{checked, ideal, messages, results, same};
+use super::{held, stopped};
 use crate::tests::fault_table::stage::run;
 use psd_rig::LineStatistics;
 
@@ -118,6 +118,58 @@ fn specimens_at_a_scale_give_the_results_of_the_prototype() {
             1e-6 + 1e-5 * size
         }
     });
+}
+
+/// The same frame with P/h of 7 to 13 % of its stiffnesses.
+fn weighed(text: &str) -> String {
+    let mut text = text.to_owned();
+    for (mass, gravity) in [("2 t", "60 kN"), ("1.5 t", "50 kN"), ("1 t", "40 kN")] {
+        let with = format!("storey(mass: {mass}, height: 3 m, gravity: {gravity},");
+        text = text.replace(&format!("storey(mass: {mass},"), &with);
+    }
+    text
+}
+
+/// The weights are those of the prototype: no scale enters them, and the axes do not carry them.
+#[test]
+fn with_weights_specimens_at_a_scale_give_the_results_of_the_prototype() {
+    let ended = run(&checked(&weighed(&scaled()), "frame_rig"), "");
+    assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
+    let prototype = ideal(&weighed(PLAN));
+    same(&results(&ended.record), &prototype, |name, size| {
+        if name.contains("energy_error") || name.contains("nrms_error") {
+            1e-5
+        } else {
+            1e-6 + 1e-5 * size
+        }
+    });
+    let drift = |results: &[(&str, f64)]| {
+        let drifts = results.iter().find(|(name, _)| *name == "max_drift");
+        drifts.unwrap().1
+    };
+    assert!((drift(&prototype) / drift(&ideal(PLAN)) - 1.0).abs() > 0.01);
+}
+
+/// Faults of one axis hold both, whatever part of the structure is computed.
+#[test]
+fn a_fault_of_one_assembly_at_a_scale_holds_all_axes() {
+    let plan = checked(&weighed(&scaled()), "frame_rig");
+    for (script, why) in [
+        (
+            "after 20 moves: axis 2 stick",
+            "following error of axis 2: stopped",
+        ),
+        (
+            "after 20 moves: axis 1 reach 40 %",
+            "following error of axis 1: stopped",
+        ),
+    ] {
+        let ended = run(&plan, script);
+        stopped(&ended);
+        assert!(ended.reason().contains(why), "{script}: {}", ended.reason());
+    }
+    let frozen = run(&plan, "after 60 readings: axis 2 freeze force");
+    held(&frozen, "axis 2: the force sensor is frozen");
 }
 
 /// The stated stiffness of each axis is known before anything moves, and so is a window in numbers of the prototype.

@@ -13,7 +13,7 @@ use psd_plan::{Contact, Integrator, Mode, Plan, ProcedureKind, ShakeDamping, Sto
 /// Weights \[N\] and heights \[m\] of the floors: P/h is 15, 16 and 13 % of the initial stiffness, beyond the post-yield one of 5 %.
 const WEIGHTS: [(f64, f64); 3] = [(9e4, 3.0), (8e4, 3.0), (1e5, 2.5)];
 
-pub(super) fn weighed(mut plan: Plan) -> Plan {
+pub(crate) fn weighed(mut plan: Plan) -> Plan {
     let frame = plan.specimens[0].frame.as_ref().unwrap();
     let weigh = |storeys: &mut [Storey]| {
         for (storey, (gravity, height)) in storeys.iter_mut().zip(WEIGHTS) {

@@ -13,12 +13,12 @@ use psd_plan::{
     VirtualLink,
 };
 
-pub(super) const TESTED: Part = Part::TESTED;
+pub(crate) const TESTED: Part = Part::TESTED;
 const APART: Part = Part::Tested {
     apart: true,
     scale: Scale::FULL,
 };
-pub(super) const COMPUTED: Part = Part::Computed;
+pub(crate) const COMPUTED: Part = Part::Computed;
 
 /// First, middle and highest storey tested; two in one assembly; an assembly on a computed storey; two assemblies; adjacent but apart;
 /// none tested.
@@ -42,7 +42,7 @@ pub(super) const INTEGRATORS: [Integrator; 4] = [
 ];
 
 /// Each storey yields at a drift of 10 mm.
-pub(super) fn bilinear(stiffness: f64) -> Behaviour {
+pub(crate) fn bilinear(stiffness: f64) -> Behaviour {
     Behaviour::Bilinear {
         stiffness,
         yield_force: 0.01 * stiffness,
@@ -61,12 +61,12 @@ pub(super) fn bouc_wen(stiffness: f64) -> Behaviour {
     }
 }
 
-pub(super) fn elastic(stiffness: f64) -> Behaviour {
+pub(crate) fn elastic(stiffness: f64) -> Behaviour {
     Behaviour::Elastic { stiffness }
 }
 
 /// Storeys of 600, 400 and 300 kN/m on ground that excites them beyond yield.
-pub(super) fn shaken(
+pub(crate) fn shaken(
     parts: [Part; 3],
     model: fn(f64) -> Behaviour,
     integrator: Integrator,

@@ -2,10 +2,10 @@
 //! on the rig.
 
 pub(crate) mod escalate;
-mod gravity;
-mod hybrid;
+pub(crate) mod gravity;
+pub(crate) mod hybrid;
 pub(crate) mod preload;
-mod scaled;
+pub(crate) mod scaled;
 mod unloading;
 
 use crate::procedures::unload::run::{of_frame, to_rest};

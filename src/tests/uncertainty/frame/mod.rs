@@ -1,6 +1,7 @@
 //! Uncertainty of the results of frames, under ground motion and impact.
 
 mod closed_form;
+mod hybrid;
 mod repeated_runs;
 
 use crate::tests::testing::{elastic_plan, every};

@@ -13,7 +13,7 @@ const RUNS: u32 = 150;
 /// The virtual rig runs `RUNS` times with random inputs; the scatter is compared with the prediction of one run of `uncertain`. The
 /// relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)). For a Monte Carlo prediction it is 1/√(2·64).
 /// The limit is three times both combined.
-fn scatters_as_predicted(
+pub(super) fn scatters_as_predicted(
     uncertain: &Plan,
     names: &[(&str, usize)],
     drawn: bool,

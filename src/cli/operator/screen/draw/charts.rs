@@ -13,19 +13,10 @@ use psd_text::units::display::{readable_unit, significant};
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
-    let [x, r] = if view.model.axes() > 1 {
-        ["top floor", "base shear"]
-    } else {
-        ["X", "R"]
-    };
-    let across = if view.model.axes() > 1 {
-        "first floor"
-    } else {
-        "X"
-    };
-    let [x, r] = [x, r].map(|word| view.model.on_the_rig(word));
+    let names = view.model.shown.names(view.model.axes());
+    let [x, r] = [names.displacement, names.force].map(|name| view.model.on_the_rig(&name));
     let displacement = [("t", Dimension::TIME), (&*x, Dimension::LENGTH)];
-    let force = [(across, Dimension::LENGTH), (&*r, Dimension::FORCE)];
+    let force = [(&*names.across, Dimension::LENGTH), (&*r, Dimension::FORCE)];
     let curves = &view.model.curves;
     let predicted = view.model.prediction();
     // The time of a step that does not integrate is that of the laboratory, which is not predicted.

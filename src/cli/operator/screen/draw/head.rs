@@ -153,21 +153,16 @@ fn numbers(
     feedback: &[(f64, f64)],
     [tracking, energy, tracking_energy]: [&str; 3],
 ) -> Vec<String> {
-    let several = view.model.axes() > 1;
-    let (highest, sum) = feedback
-        .iter()
-        .fold((0.0, 0.0), |(_, sum), (displacement, force)| {
-            (*displacement, sum + force)
-        });
-    let (displacement, force) = if several {
-        ("top floor", "base shear")
-    } else {
-        ("X", "R")
-    };
-    let displacement = view.model.on_the_rig(displacement);
+    let shown = &view.model.shown;
+    let names = shown.names(feedback.len());
+    let highest = feedback
+        .last()
+        .map_or(0.0, |(displacement, _)| *displacement);
+    let shown_force = shown.force(feedback.iter().map(|(_, force)| *force));
+    let (displacement, force) = (view.model.on_the_rig(&names.displacement), names.force);
     let mut words = vec![
         format!("{displacement} {}", readable(highest, Dimension::LENGTH)),
-        format!("{force} {}", readable(sum, Dimension::FORCE)),
+        format!("{force} {}", readable(shown_force, Dimension::FORCE)),
     ];
     if let Some(error) = view.model.tracking_error() {
         // A rounding error is not a tracking error.

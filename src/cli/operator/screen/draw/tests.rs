@@ -12,6 +12,7 @@ use crate::operator::dialogue::keys::Key;
 use crate::operator::question::{After, Question, QuestionKind, Stay};
 use crate::operator::screen::curve::Curves;
 use crate::operator::screen::model::Model;
+use crate::operator::shown::Shown;
 
 use psd::run::{Extent, Motion, StepReport};
 use psd_plan::Interval;
@@ -117,7 +118,10 @@ fn a_run_at_80_by_24() {
 #[test]
 fn numbers_of_a_specimen_at_a_scale_are_said_to_be_those_of_the_rig() {
     let scaled = Model {
-        of_rig: " on the rig",
+        shown: Shown {
+            of_rig: " on the rig",
+            ..Shown::default()
+        },
         ..model()
     };
     let text = picture((100, 24), &Dialogue::new(None), &scaled);
@@ -137,13 +141,15 @@ fn a_run_with_a_prediction() {
     for step in 0..=700_u32 {
         let time = f64::from(step) * 1e-4;
         let displacement = 22e-3 * (-20.0 * time).exp() * (125.0 * time).sin();
-        predicted.push(&StepReport::of_readings(
+        let force = 3.0e5 * displacement;
+        let step = StepReport::of_readings(
             step.into(),
             time,
             &[displacement],
             &[displacement],
-            &[3.0e5 * displacement],
-        ));
+            &[force],
+        );
+        predicted.push(&step, &Shown::default());
     }
     let model = Model {
         predicted: [Reach {
