@@ -125,7 +125,7 @@ pub fn plan(
             .map(|(index, _)| index)
             .collect::<Vec<_>>()
     };
-    let specimens: Vec<_> = of_kind(checker, Kind::Specimen)
+    let mut specimens: Vec<_> = of_kind(checker, Kind::Specimen)
         .into_iter()
         .map(|block| declarations::specimen::specimen(checker, block))
         .collect();
@@ -143,6 +143,7 @@ pub fn plan(
     let procedures = procedures::procedures(checker);
     procedures::check_specimen(checker, &procedures);
     procedures::check_axes(checker, &procedures, &specimens, rig.as_ref());
+    slices::preload::check::check_axial_loads(checker, &procedures, &mut specimens, rig.as_ref());
     // Two `limits` blocks are an error; the targets are compared with neither of them.
     if let Some(limits) = limits
         .as_ref()

@@ -54,6 +54,7 @@ pub use procedures::impact::parameters::{
 };
 pub use procedures::mode::Mode;
 pub use procedures::move_to::parameters::Move;
+pub use procedures::preload::parameters::Preload;
 pub use procedures::shake::parameters::Shake;
 pub use procedures::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedures::stiffness_ramp::parameters::{
@@ -68,7 +69,7 @@ pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
 pub use reproduction::Reproduction;
-pub use rig::axis::{AxisCalibration, AxisPlan};
+pub use rig::axis::{AxialAxis, AxisCalibration, AxisPlan};
 pub use rig::axis_names::{named_axis, of_axis, who};
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
@@ -155,11 +156,17 @@ impl Plan {
         ideal
     }
 
-    /// Number of actuators that the rig needs, each with a load cell.
+    /// Number of actuators that the rig needs, each with a load cell; the axial ones are beside them.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
         self.specimen_on_the_rig()
             .map_or(1, Specimen::degrees_of_freedom)
+    }
+
+    /// The same with the axial ones.
+    #[must_use]
+    pub fn axes_on_the_rig(&self) -> usize {
+        self.degrees_of_freedom() + self.rig.axial_axes(&self.limits).count()
     }
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod facts;
 pub mod impact;
 pub mod inspect;
 pub mod move_to;
+pub mod preload;
 pub mod shake;
 pub mod stepping;
 pub mod stiffness_ramp;
@@ -32,6 +33,7 @@ use psd_language::check::declared::Declared;
 use psd_physics::self_test::SelfTestPart;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::Formula;
+use psd_plan::procedures::preload::block::AXIAL_FORCE;
 use psd_plan::record::{
     CycleStep, History, MoveStep, NamedResult, ProcedureRecord, RampStep, SweepStep,
 };
@@ -56,6 +58,7 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
         ProcedureBlock::Escalate => escalate::check::escalate(checker, block),
         ProcedureBlock::Unload => unload::check::unload(checker, block),
         ProcedureBlock::Move => move_to::check::move_block(checker, block),
+        ProcedureBlock::Preload => preload::check::preload(checker, block),
         ProcedureBlock::Inspect => inspect::check::inspect(checker, block),
     }
 }
@@ -82,6 +85,7 @@ pub(crate) fn check_declared(
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_)
+        | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => {}
     }
 }
@@ -107,7 +111,7 @@ pub(crate) fn stays_positive(kind: &ProcedureKind) -> bool {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => ramp.displacements.iter().all(positive),
         ProcedureKind::Move(to) => positive(&to.to),
-        ProcedureKind::Inspect { .. } => true,
+        ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => true,
         ProcedureKind::Impact(_)
         | ProcedureKind::Escalate(_)
         | ProcedureKind::Shake(_)
@@ -123,7 +127,7 @@ pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves
         ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
         ProcedureKind::Shake(shake) => Leaves::Moving(shake::left::left(shake, grounds)),
         ProcedureKind::Escalate(series) => Leaves::Moving(escalate::declared::motion(series)),
-        ProcedureKind::Inspect { .. } => Leaves::AsFound,
+        ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
@@ -148,6 +152,7 @@ pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Optio
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_)
+        | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => None,
     }
 }
@@ -163,6 +168,11 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
         ProcedureKind::Unload(unload) => unload::facts::facts(unload),
         ProcedureKind::Escalate(series) => escalate::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
+        ProcedureKind::Preload(_) => Facts {
+            tests: Tests::Nothing,
+            headline: vec![AXIAL_FORCE.name],
+            ..Facts::default()
+        },
         ProcedureKind::Inspect { .. } => Facts {
             tests: Tests::Nothing,
             ..Facts::default()
@@ -181,6 +191,7 @@ pub(crate) fn point_impact(kind: &ProcedureKind) -> Option<&Impact> {
         | ProcedureKind::Escalate(_)
         | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_)
+        | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => None,
     }
 }
@@ -195,7 +206,9 @@ pub(crate) fn recorded(history: &History) -> Recorded {
         History::Cycle(_) => cycle::facts::recorded(),
         History::Escalate(_) => escalate::facts::recorded(),
         History::FrameUnload(_) => unload::facts::recorded_frame(),
-        History::Move(_) | History::Unload(_) | History::Inspect => Recorded::default(),
+        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {
+            Recorded::default()
+        }
     }
 }
 
@@ -219,6 +232,7 @@ pub(crate) fn run(
         ProcedureKind::Escalate(series) => escalate::run::perform(series, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::run::perform(unload, plan, inputs, session),
         ProcedureKind::Move(target) => move_to::run::perform(target, inputs, session),
+        ProcedureKind::Preload(load) => preload::run::perform(load, inputs, session),
         ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
     }
 }
@@ -261,6 +275,7 @@ pub(crate) fn attribute(
         | History::Move(_)
         | History::Unload(_)
         | History::FrameUnload(_)
+        | History::Preload
         | History::Inspect => return,
     }
     common::fit_uncertainty::combine(results);
@@ -284,6 +299,7 @@ pub fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Escalate(series) => escalate::run::most_steps(series, plan),
         ProcedureKind::Move(_) => Some(1),
+        ProcedureKind::Preload(_) => Some(u64::from(preload::run::STEPS)),
         ProcedureKind::Inspect { .. } => Some(0),
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
     }
@@ -305,6 +321,7 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_)
+        | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => None,
     }
 }
@@ -320,6 +337,7 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_)
+        | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => None,
     }
 }
@@ -339,7 +357,7 @@ pub(crate) fn chart(
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
         History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
         History::FrameUnload(steps) => shake::figures::unloading_chart(run, name, steps, kind),
-        History::Move(_) | History::Unload(_) | History::Inspect => None,
+        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => None,
     }
 }
 
@@ -355,6 +373,7 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
         | History::Move(_)
         | History::Unload(_)
         | History::FrameUnload(_)
+        | History::Preload
         | History::Inspect => None,
     }
 }
@@ -364,7 +383,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
     let name = procedure.name.clone();
     let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
     let scaled = assemblies.clone().filter(Assemblies::is_scaled);
-    match &procedure.history {
+    let mut tables = match &procedure.history {
         History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
         History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
         History::Impact(history) => {
@@ -385,8 +404,10 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
         History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
-        History::Inspect => Vec::new(),
-    }
+        History::Preload | History::Inspect => Vec::new(),
+    };
+    tables.extend(preload::tables::table(&procedure.name, &procedure.axial));
+    tables
 }
 
 /// Check and accepted results: the numeric columns of the tables of a block, each once; none without tables.
@@ -406,6 +427,7 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
             [of_floors, numeric(&shake::tables::elements())].concat()
         }
         ProcedureBlock::Escalate => escalate::tables::columns(),
+        ProcedureBlock::Preload => preload::tables::columns(),
         ProcedureBlock::Inspect => Vec::new(),
     };
     each_once(all).into_iter()
@@ -437,7 +459,7 @@ pub(crate) fn report(
         History::FrameUnload(steps) => {
             shake::report::unloaded(run, index, procedure, steps, body);
         }
-        History::Move(_) | History::Unload(_) | History::Inspect => {}
+        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {}
     }
 }
 
@@ -451,7 +473,9 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<SelfTestPart>> {
         ProcedureKind::Shake(shake) => stepping::self_tested::stepped(&shake.stepping, true, None),
         ProcedureKind::Cycle(_) => vec![vec![SelfTestPart::Loops]],
         ProcedureKind::Unload(_) => vec![vec![SelfTestPart::Unloading]],
-        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Vec::new(),
+        ProcedureKind::Move(_) | ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => {
+            Vec::new()
+        }
     }
 }
 
@@ -488,6 +512,6 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
             let steps = steps.iter();
             steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
         }
-        History::Inspect => {}
+        History::Preload | History::Inspect => {}
     }
 }

@@ -202,6 +202,10 @@ pub enum LimitedQuantity {
     TargetDisplacement,
     MeasuredDisplacement,
     Force,
+    /// Of an axis in force control: the target.
+    TargetForce,
+    /// The same: measured − target.
+    ForceError,
     Speed,
     Increment,
     TrackingError,
@@ -219,7 +223,7 @@ impl LimitedQuantity {
             | Self::MeasuredDisplacement
             | Self::Increment
             | Self::TrackingError => Dimension::LENGTH,
-            Self::Force => Dimension::FORCE,
+            Self::Force | Self::TargetForce | Self::ForceError => Dimension::FORCE,
             Self::Speed => Dimension::VELOCITY,
             Self::EnergyError | Self::TrackingEnergyError | Self::NrmsError => Dimension::NUMBER,
         }
@@ -232,6 +236,8 @@ impl std::fmt::Display for LimitedQuantity {
             Self::TargetDisplacement => "target displacement",
             Self::MeasuredDisplacement => "measured displacement",
             Self::Force => "force",
+            Self::TargetForce => "target force",
+            Self::ForceError => "force error",
             Self::Speed => "speed",
             Self::Increment => "increment",
             Self::TrackingError => "tracking error",
@@ -251,7 +257,8 @@ pub trait Rig {
         Vec::new()
     }
 
-    /// Actuators with their load cells, at least 1.
+    /// Actuators with their load cells, at least 1. Those in force control are the last: the entries of their targets are forces \[N\], and
+    /// no path moves them.
     fn degrees_of_freedom(&self) -> usize;
 
     /// Rig time since the start of the run \[s\].

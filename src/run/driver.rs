@@ -94,6 +94,7 @@ pub fn run_with(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, kee
             session.event(EventKind::Remark, text);
         }
         let inputs = inputs.into_recorded();
+        let axial = session.guard.take_axial_readings();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),
             kind: procedure.kind.keyword(),
@@ -101,6 +102,11 @@ pub fn run_with(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, kee
             inputs,
             results,
             history,
+            axial: if keep == Keep::Results {
+                Vec::new()
+            } else {
+                axial
+            },
         });
         if let Some(stop) = stop {
             record.outcome = session.end_as_declared(&stop, plan);

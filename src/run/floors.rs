@@ -141,6 +141,17 @@ impl Session<'_> {
         Ok(())
     }
 
+    /// The axial axis of a storey, or every one, goes to this force \[N\] while the other axes hold. One reading of the floors follows, and
+    /// the fault if a limit was exceeded.
+    pub(crate) fn load_axially(
+        &mut self,
+        storey: Option<usize>,
+        force: f64,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
+        let loaded = self.guard.load_axially(storey, force);
+        self.floors_after(loaded)
+    }
+
     /// The last targets of the floors \[m\].
     pub(crate) fn floors_commanded(&self) -> &[f64] {
         self.hybrid

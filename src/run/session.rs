@@ -8,6 +8,8 @@ use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
 use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
@@ -56,9 +58,14 @@ impl<'run> Session<'run> {
         let identity = rig.identity();
         let is_simulated = identity.simulated && plan.rig.link.as_real().is_none();
         let datum = rig.datum().is_some();
-        let wanted = plan.degrees_of_freedom();
+        let wanted = plan.axes_on_the_rig();
         let guard = if axes == wanted {
-            Guard::new(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
+            Guard::with_axial_axes(
+                rig,
+                plan.limits,
+                plan.rig.limits_of_axes(&plan.limits),
+                plan.rig.axial_axes(&plan.limits),
+            )
         } else {
             rig.hold();
             let degrees = |count| {
@@ -205,9 +212,17 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Lets the operator inspect the specimen; the answer is an event.
+    /// Lets the operator inspect the specimen; the answer is an event. The operator reads which axial loads it carries.
     pub(crate) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
-        self.ask(note, &mut |observer| observer.inspect(note))
+        let loads = self.guard.axial_loads().map(|(storey, force)| {
+            let force = stated(force, Dimension::FORCE);
+            format!(
+                "; AXIAL of storey {} holds {force} in FORCE CONTROL",
+                storey + 1
+            )
+        });
+        let note = loads.fold(note.to_owned(), |note, load| note + &load);
+        self.ask(&note, &mut |observer| observer.inspect(&note))
     }
 
     /// Requests the motion enable of a rig that has not moved yet. A refusal stops nothing, because nothing has begun.

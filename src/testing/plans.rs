@@ -35,6 +35,7 @@ pub fn empty_plan() -> Plan {
             polarity: 1.0,
             calibration: Calibration::default(),
             zero_drift: None,
+            simulated_axes: Vec::new(),
         },
         limits: Limits::NONE,
         procedures: Vec::new(),

@@ -34,6 +34,7 @@ pub(super) fn record(outcome: Outcome) -> Record {
                 number("stop_time", None, None),
             ],
             history: History::Inspect,
+            axial: Vec::new(),
         }],
         events: Vec::new(),
         outcome,

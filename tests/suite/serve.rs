@@ -326,3 +326,20 @@ fn settings_of_an_init_file_are_used_and_noted() {
         std::fs::read_to_string(server.folder.path().join("runs/spring-1/journal.psdj")).unwrap();
     assert!(record.contains("not for this rig: rate 1"), "{record}");
 }
+
+/// No client could apply the load that the plan holds.
+#[test]
+fn a_rig_with_an_axial_axis_is_not_served() {
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/plans/column_axial_load.psd");
+    let served = Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(["rig", "serve", plan, "--protocol", "generic-client"])
+        .args(["--listen", "127.0.0.1:0", "--once"])
+        .output()
+        .unwrap();
+    assert!(!served.status.success());
+    let said = String::from_utf8_lossy(&served.stderr);
+    assert!(
+        said.contains("axial axis, whose load no client applies"),
+        "{said}"
+    );
+}

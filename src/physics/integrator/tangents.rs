@@ -18,7 +18,8 @@ use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 pub enum Tangents {
     /// K0 throughout: for a frame without storeys in its matrix.
     Initial,
-    /// Each storey's or element's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building, or has elements.
+    /// Each storey's or element's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building, or has elements. The bounds
+    /// of a storey with an axial load on the rig are lower by the P-Δ in its reading.
     Storeys { largest_ratio: f64 },
 }
 
@@ -168,8 +169,12 @@ impl HasTangents for Vec<f64> {
             body: Body::new([mass.at(0, 0), damping.at(0, 0)], form.time_step),
             damped: form.damping().is_some(),
             secant: tangents
-                .and_then(|tangents| tangents.only.as_ref())
-                .map_or_else(constant, |only| net(only.secant)),
+                .and_then(|tangents| Some((tangents.only.as_ref()?, &tangents.axial)))
+                .map_or_else(constant, |(only, axial)| {
+                    net(axial
+                        .as_ref()
+                        .map_or(only.secant, |axial| only.secant.less(axial.shares[0])))
+                }),
             motion: [from.displacement[0], from.velocity[0], from.acceleration[0]],
             unbalanced: load_end[0] - from.force[0],
         };
@@ -243,6 +248,42 @@ pub struct StoreyTangents {
     storeys: Vec<Storey>,
     /// \[N/m\]
     stiffnesses: Vec<f64>,
+    axial: Option<AxialShares>,
+}
+
+/// The P-Δ of axial loads on the rig. The tangents are followed without it, within their bounds, and are given with it.
+#[derive(Clone, Debug)]
+struct AxialShares {
+    /// In the reading of each storey \[N/m\].
+    shares: Vec<f64>,
+    /// Tangents with it \[N/m\].
+    net: Vec<f64>,
+}
+
+impl AxialShares {
+    fn of(readings: &[StoreyReadings], stiffnesses: &[f64]) -> Option<Self> {
+        let shares: Vec<f64> = readings
+            .iter()
+            .map(|storey| storey.axial_stiffness)
+            .collect();
+        shares.iter().any(|share| *share != 0.0).then(|| Self {
+            shares,
+            net: stiffnesses.to_vec(),
+        })
+    }
+
+    /// The reading without the P-Δ.
+    fn without(&self, storey: usize, reading: Reading) -> Reading {
+        Reading {
+            shear: reading.shear + self.shares[storey] * reading.drift,
+            ..reading
+        }
+    }
+
+    fn update(&mut self, stiffnesses: &[f64]) {
+        let storeys = self.net.iter_mut().zip(stiffnesses).zip(&self.shares);
+        storeys.for_each(|((net, stiffness), share)| *net = stiffness - share);
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -420,17 +461,29 @@ impl FollowedTangents for StoreyTangents {
         displacement: &Vec<f64>,
         force: &Vec<f64>,
     ) -> Option<Self> {
-        let stiffnesses = storeys_of(stiffness)?;
+        let mut stiffnesses = storeys_of(stiffness)?;
+        let axial = AxialShares::of(readings, &stiffnesses);
+        if let Some(axial) = &axial {
+            let storeys = stiffnesses.iter_mut().zip(&axial.shares);
+            storeys.for_each(|(stiffness, share)| *stiffness += share);
+        }
         let mut storeys = Vec::with_capacity(stiffnesses.len());
         each_reading(displacement, force, |storey, first| {
             let following = following(largest_ratio, readings.get(storey));
+            let first = axial
+                .as_ref()
+                .map_or(first, |axial| axial.without(storey, first));
             storeys.push(Storey::new(stiffnesses[storey], following, first));
         });
         storeys.reverse();
-        let only = match &stiffnesses[..] {
-            [only] => {
-                StoreyTangent::new(only, largest_ratio, readings, &displacement[0], &force[0])
-            }
+        let only = match (&stiffnesses[..], &storeys[..]) {
+            ([only], [storey]) => StoreyTangent::new(
+                only,
+                largest_ratio,
+                readings,
+                &storey.last.drift,
+                &storey.last.shear,
+            ),
             _ => None,
         };
         Some(Self {
@@ -438,6 +491,7 @@ impl FollowedTangents for StoreyTangents {
             elements: None,
             storeys,
             stiffnesses,
+            axial,
         })
     }
 
@@ -458,17 +512,20 @@ impl FollowedTangents for StoreyTangents {
             elements: Some(elements.clone()),
             storeys: followed,
             stiffnesses: elements.stiffness.clone(),
+            axial: None,
         })
     }
 
     fn stiffness(&self) -> &Vec<f64> {
-        &self.stiffnesses
+        self.axial
+            .as_ref()
+            .map_or(&self.stiffnesses, |axial| &axial.net)
     }
 
     fn compose(&self, operator: &mut SymmetricBand) {
         match &self.elements {
             Some(elements) => elements.compose(&self.stiffnesses, operator),
-            None => set_storeys(&self.stiffnesses, operator),
+            None => set_storeys(self.stiffness(), operator),
         }
     }
 
@@ -479,6 +536,7 @@ impl FollowedTangents for StoreyTangents {
             elements,
             storeys,
             stiffnesses,
+            axial,
         } = self;
         if let Some(elements) = elements {
             each_element(elements, displacement, read, |element, now| {
@@ -487,13 +545,21 @@ impl FollowedTangents for StoreyTangents {
             return changed;
         }
         if let Some(only) = only {
-            changed = only.take(&displacement[0], &force[0], &[]);
+            let share = axial.as_ref().map(|axial| axial.shares[0]);
+            let force = share.map_or(force[0], |share| force[0] + share * displacement[0]);
+            changed = only.take(&displacement[0], &force, &[]);
             stiffnesses[0] = only.stiffness;
-            return changed;
+        } else {
+            each_reading(displacement, force, |storey, now| {
+                let now = axial
+                    .as_ref()
+                    .map_or(now, |axial| axial.without(storey, now));
+                changed |= storeys[storey].take(now, &mut stiffnesses[storey]);
+            });
         }
-        each_reading(displacement, force, |storey, now| {
-            changed |= storeys[storey].take(now, &mut stiffnesses[storey]);
-        });
+        if let Some(axial) = axial {
+            axial.update(stiffnesses);
+        }
         changed
     }
 }

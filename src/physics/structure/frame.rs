@@ -48,6 +48,8 @@ pub struct Storey {
     /// The same, N: friction against the drift.
     pub coulomb: f64,
     pub part: Part,
+    /// n φ N/λ_f \[N\]: the axial load of the specimen on the rig, as far as its P-Δ is in the reading; 0 without an axial axis.
+    pub axial_load: f64,
 }
 
 /// A restoring force between two degrees of freedom of a frame of matrices.
@@ -187,7 +189,19 @@ impl Storey {
             damping: 0.0,
             coulomb: 0.0,
             part: Part::TESTED,
+            axial_load: 0.0,
         }
+    }
+
+    /// n φ N/(λ_f h) \[N/m\]: the geometric stiffness that is in the reading of the rig.
+    #[must_use]
+    pub fn axial_stiffness(&self) -> f64 {
+        self.per_height(self.axial_load)
+    }
+
+    /// A load \[N\] over the height \[N/m\].
+    fn per_height(&self, load: f64) -> f64 {
+        self.height.map_or(0.0, |height| load / height)
     }
 }
 
@@ -340,11 +354,13 @@ impl Frame {
         Ok(stiffness)
     }
 
-    /// P of each storey \[N\]: the weight of its floor and of all floors above; empty if no floor has a weight.
+    /// P of each storey \[N\]: the weight of its floor and of all floors above. Without any weight it is the axial load on the rig; empty
+    /// if there is none.
     #[must_use]
     pub fn axial_loads(&self) -> Vec<f64> {
         if self.storeys.iter().all(|storey| storey.gravity == 0.0) {
-            return Vec::new();
+            let on_the_rig = self.storeys.iter().map(|storey| storey.axial_load);
+            return on_the_rig.filter(|_| self.has_axial_load()).collect();
         }
         let weights: Vec<f64> = self.storeys.iter().map(|storey| storey.gravity).collect();
         let mut loads = vec![0.0; weights.len()];
@@ -352,12 +368,18 @@ impl Frame {
         loads
     }
 
-    /// P/h of each storey \[N/m\]: its shear by P-Δ per drift, against its restoring force; empty if no floor has a weight.
+    /// Whether the P-Δ of an axial load is in a reading of the rig.
+    #[must_use]
+    pub fn has_axial_load(&self) -> bool {
+        self.storeys.iter().any(|storey| storey.axial_load != 0.0)
+    }
+
+    /// P/h of each storey \[N/m\]: its shear by P-Δ per drift, against its restoring force; empty without P.
     #[must_use]
     pub fn gravity_stiffness(&self) -> Vec<f64> {
         let storeys = self.axial_loads().into_iter().zip(&self.storeys);
         storeys
-            .map(|(load, storey)| storey.height.map_or(0.0, |height| load / height))
+            .map(|(load, storey)| storey.per_height(load))
             .collect()
     }
 

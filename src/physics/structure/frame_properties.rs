@@ -8,7 +8,7 @@ use crate::integrator::Integrator;
 use crate::integrator::stability::{Met, longest_stable_step};
 use crate::structure::BandFactor;
 use crate::structure::elements::Elements;
-use crate::structure::frame::{Frame, Member, Part};
+use crate::structure::frame::{Frame, Member, Part, Storey};
 use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
     damping_matrix, modes, storey_stiffness, storeys_of,
@@ -18,7 +18,8 @@ use crate::structure::{
 #[derive(Clone, Debug)]
 pub struct FrameProperties {
     pub matrices: FrameMatrices,
-    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings.
+    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey. Without G, as the readings:
+    /// of a storey with an axial load on the rig, without the share of G that is in its reading.
     pub operator: SymmetricBand,
     /// Those of a frame of matrices; None without any.
     pub elements: Option<Elements>,
@@ -46,25 +47,37 @@ impl FrameProperties {
         let unloaded = modes(&mass, &stiffness)?;
         let damping = damping_matrix(damping, &mass, &stiffness, &unloaded)?;
         let weights = frame.gravity_stiffness();
-        let gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
+        let mut gravity = (!weights.is_empty()).then(|| storey_stiffness(&weights));
         let elements = frame.elements()?;
         let computes = frame.members().any(|member| member.part == Part::Computed);
-        let operator = if computes {
+        let mut operator = if computes {
             let members = frame.members().map(|member| member.operator_stiffness());
             frame.assembled(&members.collect::<Vec<f64>>())?
         } else {
             stiffness.clone()
         };
+        let mut stiffness = stiffness;
+        if frame.has_axial_load() {
+            // The axial load lowers the readings of its storey, and the share of G that is computed: K − G remains.
+            let on_the_rig: Vec<f64> = frame.storeys.iter().map(Storey::axial_stiffness).collect();
+            let computed = weights.iter().zip(&on_the_rig).map(|(all, own)| all - own);
+            let computed: Vec<f64> = computed.collect();
+            let on_the_rig = storey_stiffness(&on_the_rig);
+            stiffness.add(&on_the_rig, -1.0);
+            operator.add(&on_the_rig, -1.0);
+            let is_computed = computed.iter().any(|share| *share != 0.0);
+            gravity = is_computed.then(|| storey_stiffness(&computed));
+        }
         let matrices = FrameMatrices {
             mass,
             damping,
             stiffness,
             gravity,
         };
-        let modes = if matrices.gravity.is_some() {
-            modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
-        } else {
+        let modes = if weights.is_empty() {
             unloaded
+        } else {
+            modes(&matrices.mass, &matrices.net(&matrices.stiffness))?
         };
         Ok(Self {
             matrices,
@@ -165,7 +178,10 @@ impl FrameProperties {
                     largest.unwrap_or(member.operator_stiffness())
                 })
                 .collect();
-            if let Some(behaving) = assembled(frame, &behaves) {
+            let mut read = behaves.clone();
+            let loaded = read.iter_mut().zip(&frame.storeys);
+            loaded.for_each(|(read, storey)| *read -= storey.axial_stiffness());
+            if let Some(behaving) = assembled(frame, &read) {
                 met.highest = own.max(self.highest(&self.matrices.net(&behaving)));
             }
             let storeys = || members.iter().zip(&behaves);

@@ -14,7 +14,7 @@
 
 use super::cell_damping::CellDamping;
 use super::elements::{ElementReading, Elements, add_force, deformation};
-use super::frame::{Frame, Member, Part, Scale};
+use super::frame::{Frame, Member, Part, Scale, Storey};
 use super::shear_building::shears;
 use crate::relaxation::maxwell::Motion;
 use crate::relaxation::relaxation_state::{Deformed, RelaxationState};
@@ -47,6 +47,8 @@ pub struct Assemblies {
     scales: Vec<Scale>,
     /// None for storeys, of which each joins its floor to the one below.
     elements: Option<Elements>,
+    /// The geometric stiffness of the axial load in the reading of each storey \[N/m\]; 0 without an axial load.
+    axial: Vec<f64>,
 }
 
 /// From the ground up, or in the order of the elements; empty for a matrix on the rig.
@@ -126,6 +128,8 @@ pub struct StoreyReadings {
     pub cells: f64,
     /// Whether the drift is the difference of two transducers.
     pub is_difference: bool,
+    /// The P-Δ per drift that is in the shear \[N/m\], by the axial load on the rig: so much can its tangent be below 0.
+    pub axial_stiffness: f64,
 }
 
 impl StoreyReadings {
@@ -136,6 +140,7 @@ impl StoreyReadings {
             noise,
             cells: 1.0,
             is_difference: false,
+            axial_stiffness: 0.0,
         }
     }
 
@@ -153,13 +158,14 @@ impl StoreyReadings {
 }
 
 impl Assemblies {
-    /// None if the whole frame is one specimen on the rig at full scale.
+    /// None if the whole frame is one specimen on the rig at full scale, without an axial load.
     #[must_use]
     pub fn of(frame: &Frame) -> Option<Self> {
         let (supports, scales) = (supports(frame), scales(frame));
         // A stiffness that is no matrix has no properties either: nothing is integrated with it.
         if let Ok(Some(elements)) = frame.elements() {
             return Some(Self {
+                axial: vec![0.0; supports.len()],
                 supports,
                 scales,
                 elements: Some(elements),
@@ -173,8 +179,10 @@ impl Assemblies {
             };
             *support == as_one && scales[storey] == Scale::FULL
         };
-        let is_whole = supports.iter().enumerate().all(whole);
-        (!is_whole).then_some(Self {
+        let is_whole = supports.iter().enumerate().all(whole) && !frame.has_axial_load();
+        let axial = frame.storeys.iter().map(Storey::axial_stiffness);
+        (!is_whole).then(|| Self {
+            axial: axial.collect(),
             supports,
             scales,
             elements: None,
@@ -189,6 +197,7 @@ impl Assemblies {
             supports: std::iter::once(Support::StrongFloor).chain(above).collect(),
             scales: vec![Scale::FULL; floors.max(1)],
             elements: None,
+            axial: vec![0.0; floors.max(1)],
         }
     }
 
@@ -390,6 +399,7 @@ impl Assemblies {
             },
             cells: self.shear_of(storey).len() as f64,
             is_difference: self.supports[storey] == Support::Below,
+            axial_stiffness: self.axial[storey],
         };
         (0..self.supports.len()).map(storey).collect()
     }
@@ -405,6 +415,7 @@ impl Assemblies {
         let tested = self.at_axes(storeys).into_iter().zip(self.scales());
         let on_the_rig = tested.map(|(readings, scale)| StoreyReadings {
             noise: scale.noise_on_the_rig(readings.noise),
+            axial_stiffness: scale.stiffness_on_the_rig(readings.axial_stiffness),
             ..readings
         });
         on_the_rig.collect()

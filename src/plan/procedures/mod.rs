@@ -31,6 +31,11 @@ pub mod move_to {
     pub mod history;
     pub mod parameters;
 }
+pub mod preload {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
 pub mod shake {
     pub mod block;
     pub mod history;
@@ -48,7 +53,7 @@ pub mod unload {
     pub mod parameters;
 }
 
-use crate::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
+use crate::{Cycle, DampingSweep, Escalate, Impact, Move, Preload, Shake, StiffnessRamp, Unload};
 
 /// The blocks of the procedures: a plan writes each by its keyword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +66,7 @@ pub enum ProcedureBlock {
     Unload,
     Escalate,
     Move,
+    Preload,
     Inspect,
 }
 
@@ -75,6 +81,7 @@ pub enum ProcedureKind {
     Unload(Unload),
     Escalate(Escalate),
     Move(Move),
+    Preload(Preload),
     /// The operator inspects the specimen.
     Inspect {
         note: String,
@@ -94,7 +101,17 @@ impl ProcedureKind {
             Self::Unload(_) => "unload",
             Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
+            Self::Preload(_) => "preload",
             Self::Inspect { .. } => "inspect",
+        }
+    }
+
+    /// The axial load that it applies: storey from 0, force \[N\].
+    #[must_use]
+    pub const fn axial_load(&self) -> Option<(usize, f64)> {
+        match self {
+            Self::Preload(load) => Some((load.storey, load.force)),
+            _ => None,
         }
     }
 
@@ -109,7 +126,7 @@ impl ProcedureKind {
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
             Self::Escalate(series) => Some(series.impact.specimen),
-            Self::Move(_) | Self::Inspect { .. } => None,
+            Self::Move(_) | Self::Preload(_) | Self::Inspect { .. } => None,
         }
     }
 }

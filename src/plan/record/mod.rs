@@ -21,6 +21,7 @@ pub use crate::procedures::damping_sweep::history::{
 pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
 pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep};
 pub use crate::procedures::move_to::history::MoveStep;
+pub use crate::procedures::preload::history::AxialReading;
 pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
 pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
 pub use crate::procedures::unload::history::{Rest, UnloadStep};
@@ -162,6 +163,8 @@ pub struct ProcedureRecord {
     /// In the order of the schema.
     pub results: Vec<NamedResult>,
     pub history: History,
+    /// Readings of the axial axes during it; empty without an axial axis.
+    pub axial: Vec<AxialReading>,
 }
 
 /// A result under its name in the language.

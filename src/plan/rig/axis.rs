@@ -2,7 +2,7 @@
 //! of a plan, the index of an axis. Out: its polarity, limits, pre-test check, reading rules and calibration.
 
 use crate::{
-    Calibration, DeviceLink, Interval, Limits, PretestCheck, ReadingRules, RealLink, RigPlan,
+    Calibration, DeviceLink, Interval, Limits, Link, PretestCheck, ReadingRules, RealLink, RigPlan,
 };
 
 /// The entries of one axis of a real rig. None: the rig's entry applies.
@@ -28,6 +28,22 @@ pub struct AxisPlan {
     /// The pre-test check of this axis, instead of that of the rig.
     pub actuator: Option<DeviceLink>,
     pub load_cell: Option<DeviceLink>,
+    /// None: it moves a storey sideways.
+    pub axial: Option<AxialAxis>,
+}
+
+/// An axis that loads a storey along its height, in force control. Its forces are positive if they compress the storey, and its
+/// displacements if they shorten it. The limits of its displacement are its band.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxialAxis {
+    /// From 0.
+    pub storey: usize,
+    /// At which its force changes \[N/s\].
+    pub rate: f64,
+    /// Largest difference of its force from the target \[N\].
+    pub tolerance: f64,
+    /// φ of the P-Δ φ N u/h in the lateral reading.
+    pub p_delta: f64,
 }
 
 /// The calibrations of one axis. None: the rig's entry applies.
@@ -109,24 +125,50 @@ impl RigPlan {
     /// The limits of the run for the axis with this index: its own limits narrow them.
     #[must_use]
     pub fn limits_of(&self, axis: usize, run: &Limits) -> Limits {
-        let narrowed =
-            |all: Interval, own: Option<Interval>| own.map_or(all, |own| all.intersection(own));
-        self.own(axis).map_or(*run, |own| Limits {
-            displacement: narrowed(run.displacement, own.displacement),
-            force: narrowed(run.force, own.force),
-            ..*run
-        })
+        self.own(axis).map_or(*run, |own| own.limits(run))
     }
 
     /// The limits of the run for every axis; empty if no axis has separate limits.
     #[must_use]
     pub fn limits_of_axes(&self, run: &Limits) -> Vec<Limits> {
-        let axes = self.link.as_real().map_or(0, |link| link.axes.len());
+        let axes = self.listed_axes().len();
         (0..axes).map(|axis| self.limits_of(axis, run)).collect()
     }
 
+    /// The axial axes, in the order of the list, each with its limits.
+    pub fn axial_axes(&self, run: &Limits) -> impl Iterator<Item = (AxialAxis, Limits)> {
+        let axes = self.listed_axes().iter();
+        axes.filter_map(|axis| Some((axis.axial?, axis.limits(run))))
+    }
+
+    /// The axes of its list; none without a list.
+    #[must_use]
+    pub fn listed_axes(&self) -> &[AxisPlan] {
+        match &self.link {
+            Link::Real(link) => &link.axes,
+            Link::Virtual(_) => &self.simulated_axes,
+        }
+    }
+
     fn own(&self, axis: usize) -> Option<&AxisPlan> {
-        self.link.as_real().and_then(|link| link.axes.get(axis))
+        self.listed_axes().get(axis)
+    }
+}
+
+impl AxisPlan {
+    /// The limits of the run, narrowed by those of the axis. The displacement of an axial axis has another direction than those of the run.
+    fn limits(&self, run: &Limits) -> Limits {
+        let narrowed =
+            |all: Interval, own: Option<Interval>| own.map_or(all, |own| all.intersection(own));
+        let displacement = match self.axial {
+            Some(_) => Interval::ALL,
+            None => run.displacement,
+        };
+        Limits {
+            displacement: narrowed(displacement, self.displacement),
+            force: narrowed(run.force, self.force),
+            ..*run
+        }
     }
 }
 

@@ -54,6 +54,18 @@ impl Dialect {
         self.abilities().name
     }
 
+    /// Why an axis in force control is refused. The controller itself must leave force control at the band of the axis, or without host,
+    /// cell or frame, and then hold the displacement: a softening specimen runs away before psd can act.
+    #[must_use]
+    pub const fn no_force_control(&self) -> Option<&'static str> {
+        match self {
+            Self::Instron => {
+                Some("psd switches its watchdog off, and only its position mode is on record")
+            }
+            _ => Some("its protocol has no message for a controlled force"),
+        }
+    }
+
     /// The row of this protocol.
     #[must_use]
     pub const fn abilities(&self) -> Abilities {

@@ -23,6 +23,8 @@ pub struct RigPlan {
     pub calibration: Calibration,
     /// Allowed zero drift in a run; None: it is not checked.
     pub zero_drift: Option<DriftCheck>,
+    /// The axes that a virtual rig lists: their limits, and the axial axes after all others. Empty for a real rig, whose link has its axes.
+    pub simulated_axes: Vec<AxisPlan>,
 }
 
 impl RigPlan {

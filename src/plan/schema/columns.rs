@@ -35,6 +35,10 @@ pub const DISPLACEMENT_ON_THE_RIG: Column = column("displacement_rig_m", Dimensi
 pub const FORCE_ON_THE_RIG: Column = column("force_rig_n", Dimension::FORCE);
 /// Of an element of a frame of matrices: measured displacement of its second end relative to the first.
 pub const DEFORMATION: Column = column("deformation_m", Dimension::LENGTH);
+/// Of an axial axis.
+pub const AXIAL_TARGET: Column = column("axial_target_n", Dimension::FORCE);
+pub const AXIAL_FORCE: Column = column("axial_force_n", Dimension::FORCE);
+pub const AXIAL_DISPLACEMENT: Column = column("axial_displacement_m", Dimension::LENGTH);
 pub const STOREY_ENERGY: Column = column("storey_energy_j", Dimension::ENERGY);
 pub const ENERGY: Column = column("energy_j", Dimension::ENERGY);
 pub const RESTORING_ENERGY: Column = column("restoring_energy_j", Dimension::ENERGY);

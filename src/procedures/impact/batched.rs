@@ -136,6 +136,7 @@ impl BatchedImpact {
                 inputs: Vec::new(),
                 results: results.filter(found).collect(),
                 history: History::Impact(history),
+                axial: Vec::new(),
             },
             outcome: stop.map_or(Outcome::Completed, |fault| Stop::Rig(fault).outcome()),
         })

@@ -1,6 +1,9 @@
 //! `unload`: moves one degree of freedom, or all floors of a frame together, to zero restoring force. In: the stiffness with which the
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
+//!
+//! Under an axial load it has three parts: to zero lateral force under the load; the load goes while the lateral axes hold; to zero lateral
+//! force again, because the residual displacement left φ N u/h.
 
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::setting::frame_of;
@@ -142,9 +145,33 @@ fn unload(
         .transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    UncertainRun::new(whole, inputs, session.guard.declared_noise())
-        .unloaded(&mut rest, &unloading, steps);
-    Ok(rest)
+    let uncertain = UncertainRun::new(whole, inputs, session.guard.declared_noise());
+    if session.guard.axial_loads().next().is_none() {
+        uncertain.unloaded(&mut rest, &unloading, steps);
+        return Ok(rest);
+    }
+    let (_, broken) = session.load_axially(None, 0.0)?;
+    if let Some(stop) = broken {
+        return Err(stop);
+    }
+    let unloading = of_frame(&without_axial_loads(frame_of(whole, plan.specimen)?))?;
+    let first = steps.last().map_or(0, |step| step.step) + 1;
+    let mut last = Vec::new();
+    let rested = to_rest(unloading.clone(), within, speed, first, session, &mut last);
+    let rested = rested.map(|mut rest| {
+        uncertain.unloaded(&mut rest, &unloading, &last);
+        rest
+    });
+    steps.append(&mut last);
+    rested
+}
+
+fn without_axial_loads(frame: &Frame) -> Frame {
+    let mut frame = frame.clone();
+    for storey in &mut frame.storeys {
+        storey.axial_load = 0.0;
+    }
+    frame
 }
 
 /// Moves to zero restoring force; `before` steps of the procedure are done already. The first of `steps` is the start.

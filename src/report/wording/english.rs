@@ -285,6 +285,7 @@ wording! {
         CALIBRATION_TERMS = ["force", "displacement", "zero offset of the force", "its allowed zero drift"];
         READING = "Reading";
         SETTLING = "Settling";
+        AXIAL_AXIS = "Axial axis";
         WATCHDOG = "Watchdog";
         SAFE_STATE = "Safe state";
         PRETEST_CHECK_LIMITS = "Pre-test check: limits";

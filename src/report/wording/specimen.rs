@@ -10,11 +10,11 @@ use psd_physics::structure::substructures::{Assemblies, on_the_rig};
 use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{
-    Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Part,
-    Pinching, Portal, Scale, Sections, Unloading,
+    AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
+    Mechanism, Part, Pinching, Plan, Portal, Scale, Sections, Unloading,
 };
 use psd_text::units::Dimension;
-use psd_text::units::display::stated;
+use psd_text::units::display::{significant, stated};
 
 /// Prints a stated number, or one that follows from stated numbers.
 pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
@@ -172,6 +172,7 @@ pub fn assumed(frame: &Frame) -> String {
                 article(word)
             ),
         ),
+        (frame.has_axial_load(), AXIAL_LOAD_IN_THE_READING.to_owned()),
     ];
     let sentences = assumed.into_iter().filter(|(holds, _)| *holds);
     let sentences: Vec<String> = sentences.map(|(_, sentence)| sentence).collect();
@@ -181,6 +182,28 @@ pub fn assumed(frame: &Frame) -> String {
 /// `a storey`, `an element`.
 fn article(word: &str) -> &'static str {
     if word.starts_with('e') { "an" } else { "a" }
+}
+
+const AXIAL_LOAD_IN_THE_READING: &str = "The share of the P-Δ of an axial load that is in the lateral reading is stated and was not measured.";
+
+/// An axial axis of the rig: the load that it holds, how, and the share of its P-Δ in the lateral reading.
+#[must_use]
+pub fn axial_axis(plan: &Plan, axis: &AxialAxis, band: Interval, shown: Printed<'_>) -> String {
+    let loads = plan.procedures.iter();
+    let mut loads = loads.filter_map(|procedure| procedure.kind.axial_load());
+    let load = loads.find(|(storey, _)| *storey == axis.storey);
+    let load = load.map_or_else(String::new, |(_, load)| {
+        format!(", {}", shown(load, Dimension::FORCE))
+    });
+    format!(
+        "storey {}{load} in force control ± {} at {}, between {} and {}; {} % of N u/h in the lateral reading",
+        axis.storey + 1,
+        shown(axis.tolerance, Dimension::FORCE),
+        shown(axis.rate, Dimension::FORCE_RATE),
+        shown(band.low, Dimension::LENGTH),
+        shown(band.high, Dimension::LENGTH),
+        significant(100.0 * axis.p_delta, 3),
+    )
 }
 
 /// The numbers of the report of a test of which a specimen has a scale. None for any other test.

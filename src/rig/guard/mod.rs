@@ -3,6 +3,7 @@
 //! nothing, and holds the rig on any fault. It knows no procedure.
 
 pub mod about;
+mod axial;
 pub mod final_hold;
 mod holds;
 pub mod path;
@@ -12,8 +13,9 @@ pub mod speed;
 
 use super::safety::failpoint::{Guarding, on};
 use super::{EachReading, LimitedQuantity, OWN_SPEED, Reading, Rig, RigFault, named_axis};
+use axial::AxialAxes;
 use holds::Holds;
-use psd_plan::{Interval, Limits};
+use psd_plan::{AxialAxis, Interval, Limits};
 
 /// A rig and the limits of its motion.
 pub struct Guard<'rig> {
@@ -39,6 +41,8 @@ pub struct Guard<'rig> {
     pub(super) found: (Vec<f64>, Vec<f64>),
     /// The last reading that exceeded a limit, if it is a reading.
     pub(super) broken: Option<Reading>,
+    /// The axes in force control. All else in the guard is about the other axes.
+    axial: AxialAxes,
 }
 
 /// Readings of a traverse, all inside the limits, and the fault that ended it early.
@@ -62,6 +66,19 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// It cannot be read, or is outside a limit already.
     pub fn new(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
+        Self::with_axial_axes(rig, limits, own, std::iter::empty())
+    }
+
+    /// The same with axes in force control, each with its limits, as the last axes of the rig.
+    ///
+    /// # Errors
+    /// As [`Guard::new`].
+    pub fn with_axial_axes(
+        rig: &'rig mut dyn Rig,
+        limits: Limits,
+        own: Vec<Limits>,
+        axial: impl Iterator<Item = (AxialAxis, Limits)>,
+    ) -> Result<Self, RigFault> {
         let last_contact = rig.time();
         let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
         let mut guard = Self {
@@ -77,6 +94,7 @@ impl<'rig> Guard<'rig> {
             holds: None,
             found,
             broken: None,
+            axial: AxialAxes::new(axial),
         };
         let Reading {
             displacement,
@@ -118,16 +136,18 @@ impl<'rig> Guard<'rig> {
     pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.proposed = None;
         self.check_move(targets)?;
-        let before = self.rig.before_motion(targets, self.speed_of(speed));
+        let all = self.axial.with_others(targets);
+        let before = self.rig.before_motion(&all, self.speed_of(speed));
         self.or_hold(before)?;
         let speed = self.speed_of(speed);
         if let Some(speed) = speed {
             self.check_speed(speed)?;
         }
-        let proposed = self.rig.propose(targets, speed);
+        let proposed = self.rig.propose(&all, speed);
         let encoded = self.or_hold(proposed)?;
         // The decoded bytes are the motion that will happen, so they are compared with the limits again.
-        self.check_targets(&encoded.targets)?;
+        let others = encoded.targets.len().saturating_sub(self.axial.count());
+        self.check_targets(&encoded.targets[..others])?;
         self.check_speed(encoded.speed)?;
         self.proposed = Some((targets.to_vec(), encoded.speed));
         Ok(())
@@ -210,8 +230,9 @@ impl<'rig> Guard<'rig> {
             readings: Vec::new(),
             fault: Some(fault),
         };
+        let all = self.axial.with_others(targets);
         let allowed = self.check_targets(targets).and_then(|()| {
-            let before = self.rig.before_motion(targets, Some(velocity));
+            let before = self.rig.before_motion(&all, Some(velocity));
             self.or_hold(before)?;
             self.check_speed(velocity.abs())
         });
@@ -222,7 +243,7 @@ impl<'rig> Guard<'rig> {
         self.going.clear();
         self.speed = Some(velocity.abs());
         let traversed = self.read_during(samples, |rig, each| {
-            rig.traverse(targets, velocity, samples, each)
+            rig.traverse(&all, velocity, samples, each)
         });
         if traversed.fault.is_none() {
             self.commanded.copy_from_slice(targets);
@@ -239,9 +260,11 @@ impl<'rig> Guard<'rig> {
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let (mut last_contact, mut broken) = (self.last_contact, None);
-        let moved = motion(self.rig, &mut |reading| {
+        let axial = &mut self.axial;
+        let moved = motion(self.rig, &mut |mut reading| {
             last_contact = reading.time;
-            if let Some(fault) = outside(&limits, &own, &reading) {
+            let of_axial = axial.take(&mut reading, true);
+            if let Some(fault) = outside(&limits, &own, &reading).or(of_axial) {
                 broken = Some(reading).filter(Reading::is_finite);
                 return Err(fault);
             }
@@ -368,7 +391,8 @@ impl<'rig> Guard<'rig> {
         value: f64,
     ) -> RigFault {
         self.hold();
-        let axis = index.and_then(|index| named_axis(index, self.commanded.len()));
+        let axes = self.commanded.len() + self.axial.count();
+        let axis = index.and_then(|index| named_axis(index, axes));
         RigFault::LimitBreached {
             quantity,
             value,
@@ -383,7 +407,8 @@ impl<'rig> Guard<'rig> {
             // The guard itself finds a limit exceeded by a reading that it has; the rig finds it during a motion.
             if !matches!(fault, RigFault::LimitBreached { .. }) {
                 self.last_contact = self.rig.time();
-            } else if let Some(reading) = self.rig.take_broken() {
+            } else if let Some(mut reading) = self.rig.take_broken() {
+                let _ = self.axial.take(&mut reading, false);
                 self.last_contact = reading.time;
                 self.broken = Some(reading);
             }

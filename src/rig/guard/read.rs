@@ -12,8 +12,8 @@ impl Guard<'_> {
     /// The reading is outside a limit or not finite, or the rig fails.
     pub fn read(&mut self) -> Result<Reading, RigFault> {
         let read = self.rig.read();
-        let reading = self.or_hold(read)?;
-        self.checked(&reading)?;
+        let mut reading = self.or_hold(read)?;
+        self.checked(&mut reading)?;
         Ok(reading)
     }
 
@@ -23,14 +23,19 @@ impl Guard<'_> {
     /// As [`Guard::read`].
     pub fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         let read = self.rig.read_moved();
-        let (reading, moved) = self.or_hold(read)?;
-        self.checked(&reading)?;
+        let (mut reading, moved) = self.or_hold(read)?;
+        self.checked(&mut reading)?;
         Ok((reading, moved))
     }
 
-    pub(super) fn checked(&mut self, reading: &Reading) -> Result<(), RigFault> {
+    /// Checks a reading at rest. The entries of axial axes are taken out of it.
+    pub(super) fn checked(&mut self, reading: &mut Reading) -> Result<(), RigFault> {
         self.last_contact = reading.time;
-        self.check_limits_and_tracking(reading).inspect_err(|_| {
+        let of_axial = self.axial.take(reading, true).map_or(Ok(()), Err);
+        let checked = self
+            .check_limits_and_tracking(reading)
+            .and_then(|()| self.or_hold(of_axial));
+        checked.inspect_err(|_| {
             self.broken = Some(reading.clone()).filter(Reading::is_finite);
         })
     }

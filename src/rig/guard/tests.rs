@@ -226,6 +226,7 @@ fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
             holds,
             found,
             broken: None,
+            axial: AxialAxes::default(),
         };
         assert_eq!(quantity(guard.read().unwrap_err()), expected);
         assert!(rig.held);

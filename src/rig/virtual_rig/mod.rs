@@ -3,6 +3,7 @@
 //! cell has its own seed.
 
 pub mod actuator;
+mod axial;
 #[cfg(test)]
 mod frame_tests;
 pub mod load_cell;
@@ -13,6 +14,7 @@ mod stroke;
 #[cfg(test)]
 mod tests;
 
+use self::axial::AxialActuator;
 use self::smooth_paths::Course;
 use self::springs::Springs;
 use self::stroke::Stroke;
@@ -35,13 +37,15 @@ pub struct VirtualRig {
     /// Polarity of every axis, +1 or −1, between rig and plan. The specimen has the polarity of the rig.
     sign: f64,
     axes: Vec<Axis>,
+    /// The actuators in force control, behind the others in targets and readings.
+    axial: Vec<AxialActuator>,
     springs: Springs,
     /// \[s\]
     time: f64,
     /// The last positions of the axes \[m\], and their restoring forces there \[N\].
     bent: Vec<f64>,
     restoring_force: Vec<f64>,
-    /// Targets at the rig \[m\] and speed of the fastest axis \[m/s\].
+    /// Targets at the rig \[m\], then of the actuators in force control \[N\], and speed of the fastest axis \[m/s\].
     proposed: Option<(Vec<f64>, f64)>,
     /// The references at the end of the present move \[m\], and the motion of each piston.
     aims: Vec<f64>,
@@ -103,6 +107,7 @@ impl VirtualRig {
             settle,
             sign,
             axes,
+            axial: Vec::new(),
             springs,
             time: 0.0,
             bent: at_rest.clone(),
@@ -129,13 +134,21 @@ impl VirtualRig {
         let specimen = Self::specimen_of(plan);
         let (settle, sign) = (plan.rig.settle, plan.rig.polarity);
         let rig = match specimen.and_then(|specimen| specimen.frame.as_ref()) {
-            Some(frame) => Self::of_frame(link, settle, frame, sign),
+            Some(frame) => Self {
+                axial: AxialActuator::of(plan, frame, &link),
+                ..Self::of_frame(link, settle, frame, sign)
+            },
             None => Self::new(link, settle, specimen, sign),
         };
         Self {
             name: plan.rig.name.clone(),
             ..rig
         }
+    }
+
+    /// Actuators of both kinds.
+    fn order(&self) -> usize {
+        self.axes.len() + self.axial.len()
     }
 
     /// The specimen on the plan's rig: that of the first procedure, otherwise the first.
@@ -146,21 +159,31 @@ impl VirtualRig {
 
     /// The fault for a number of axes that differs from that of the rig.
     fn other_order(&self, found: usize) -> RigFault {
-        let own = match self.axes.len() {
+        let own = match self.order() {
             1 => "one degree of freedom".to_owned(),
             order => format!("{order} degrees of freedom"),
         };
         RigFault::Device(format!("this rig has {own}, not {found}"))
     }
 
-    /// Targets at the rig \[m\].
+    /// Targets at the rig \[m\], then those in force control \[N\].
     fn at_rig(&self, targets: &[f64]) -> Result<Vec<f64>, RigFault> {
-        if targets.len() != self.axes.len() {
+        if targets.len() != self.order() {
             return Err(self.other_order(targets.len()));
         }
         match targets.iter().find(|target| !target.is_finite()) {
             Some(target) => Err(RigFault::Device(format!("invalid target: {target} m"))),
-            None => Ok(targets.iter().map(|target| self.sign * target).collect()),
+            None => Ok(targets
+                .iter()
+                .enumerate()
+                .map(|(axis, target)| {
+                    if axis < self.axes.len() {
+                        self.sign * target
+                    } else {
+                        *target
+                    }
+                })
+                .collect()),
         }
     }
 
@@ -168,7 +191,7 @@ impl VirtualRig {
     fn only(&mut self, targets: &[f64]) -> Result<(&mut Actuator, f64), RigFault> {
         let target = self.at_rig(targets)?;
         match (&mut self.axes[..], &target[..]) {
-            ([axis], [target]) => Ok((&mut axis.actuator, *target)),
+            ([axis], [target, ..]) => Ok((&mut axis.actuator, *target)),
             _ => Err(RigFault::Device(
                 "the axes of a frame move to targets: they are not read during a motion".to_owned(),
             )),
@@ -236,6 +259,13 @@ impl VirtualRig {
         for (axis, force) in self.axes.iter_mut().zip(&mut reading.force) {
             *force = sign * axis.cell.read(*force, time);
         }
+        for axial in &mut self.axial {
+            let shortening = axial.shortening(self.springs.drift(axial.spring));
+            reading
+                .displacement
+                .push(to_quantum(shortening, resolution));
+            reading.force.push(axial.read(time));
+        }
     }
 
     /// Moves to finite targets \[m\] at this speed of the fastest axis, above 0 and finite \[m/s\], settles, pauses for so long \[s\] and
@@ -251,6 +281,21 @@ impl VirtualRig {
             self.rest(pause);
         }
         self.read_into(reading);
+    }
+
+    /// The actuators in force control go to these forces \[N\], each at its rate, while the others hold.
+    fn load(&mut self, forces: &[f64]) {
+        let mut seconds: f64 = 0.0;
+        for (axial, force) in self.axial.iter_mut().zip(forces) {
+            seconds = seconds.max(axial.go_to(*force));
+            self.springs.lean(axial.spring, axial.p_delta_stiffness());
+        }
+        if seconds > 0.0 {
+            self.rest(seconds);
+            if self.is_still {
+                self.follow();
+            }
+        }
     }
 
     /// The references move to their `aims` together, the one with the longest travel at this speed \[m/s\].
@@ -353,7 +398,7 @@ impl Rig for VirtualRig {
     }
 
     fn degrees_of_freedom(&self) -> usize {
-        self.axes.len()
+        self.order()
     }
 
     fn time(&self) -> f64 {
@@ -380,10 +425,12 @@ impl Rig for VirtualRig {
 
     /// All axes arrive simultaneously; the one with the longest travel has the requested speed.
     fn execute(&mut self) -> Result<(), RigFault> {
-        let (targets, speed) = self
+        let (mut targets, speed) = self
             .proposed
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        let forces = targets.split_off(self.axes.len());
+        self.load(&forces);
         self.aims.clone_from(&targets);
         self.arrive(speed);
         let arrived = self.time;
@@ -426,7 +473,7 @@ impl Rig for VirtualRig {
     }
 
     fn at_once(&mut self) -> Option<&mut VirtualRig> {
-        self.wait.is_some().then_some(self)
+        (self.wait.is_some() && self.axial.is_empty()).then_some(self)
     }
 
     fn traverse(

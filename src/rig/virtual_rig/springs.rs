@@ -32,11 +32,22 @@ pub(super) struct Storey {
     stiffness: f64,
     /// \[m\]
     drift: f64,
-    /// \[N\]
+    /// Without the P-Δ of an axial load \[N\].
     shear: f64,
+    /// φ N/h of an axial load \[N/m\]: the cells measure its P-Δ.
+    leaning: f64,
 }
 
 impl Storey {
+    /// Shear with the P-Δ of the axial load \[N\].
+    fn leaning(&self, shear: f64) -> f64 {
+        if self.leaning == 0.0 {
+            shear
+        } else {
+            shear - self.leaning * self.drift
+        }
+    }
+
     fn new(behaviour: &Behaviour, stiffness: f64, damper: CellDamping, stands: bool) -> Self {
         let mut model = SpecimenModel::new(behaviour);
         Self {
@@ -47,6 +58,7 @@ impl Storey {
             relaxing: RelaxationState::new(behaviour),
             stiffness,
             drift: 0.0,
+            leaning: 0.0,
         }
     }
 }
@@ -122,11 +134,30 @@ impl Springs {
                     below = Some(axis);
                 }
                 set_forces(
-                    storeys.iter().map(|storey| (storey.shear, storey.stands)),
+                    storeys
+                        .iter()
+                        .map(|storey| (storey.leaning(storey.shear), storey.stands)),
                     restoring_force,
                 );
             }
             Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
+        }
+    }
+
+    /// The axial load on a storey has this P-Δ per drift \[N/m\] from here on.
+    pub(super) fn lean(&mut self, storey: usize, per_drift: f64) {
+        if let Self::Storeys(storeys) = self
+            && let Some(storey) = storeys.get_mut(storey)
+        {
+            storey.leaning = per_drift;
+        }
+    }
+
+    /// Drift of a storey \[m\].
+    pub(super) fn drift(&self, storey: usize) -> f64 {
+        match self {
+            Self::Storeys(storeys) => storeys.get(storey).map_or(0.0, |storey| storey.drift),
+            Self::Matrix { .. } => 0.0,
         }
     }
 
@@ -153,7 +184,8 @@ impl Springs {
             let mut shears = Vec::with_capacity(storeys.len());
             each_drift(storeys, velocities, |storey, velocity| {
                 let shear = storey.damper.measured_force(storey.shear, velocity);
-                shears.push((shear + storey.relaxing.force(), storey.stands));
+                let shear = storey.leaning(shear + storey.relaxing.force());
+                shears.push((shear, storey.stands));
             });
             set_forces(shears.into_iter(), force);
         }

@@ -137,7 +137,7 @@ impl Shape<'_> {
     /// Checks that each list has an entry for every axis of the rig, and that the plan moves the same number of axes.
     fn moves(&self, lists: &[(&str, &[f64])]) -> Result<(), String> {
         let FirstRig { axes, .. } = self.rig()?;
-        let planned = self.plan.degrees_of_freedom();
+        let planned = self.plan.axes_on_the_rig();
         if axes != planned {
             return Err(format!(
                 "the plan moves {}, but the rig has {axes}",

@@ -104,6 +104,7 @@ pub fn finished() -> Finished {
             relaxation: None,
             reached: None,
         }),
+        axial: Vec::new(),
     };
     let sweep = ProcedureRecord {
         name: "c".into(),
@@ -128,6 +129,7 @@ pub fn finished() -> Finished {
             steps: sweep_steps(),
             fit: Some(line(4.02, 0.08, 0.31, 0.02)),
         }),
+        axial: Vec::new(),
     };
     let hit = ProcedureRecord {
         name: "hit".into(),
@@ -175,6 +177,7 @@ pub fn finished() -> Finished {
             critical_time_step: 0.0347,
             ending: psd_physics::impact::summary::ImpactEnding::default(),
         }),
+        axial: Vec::new(),
     };
     Finished {
         plan: plan(),
@@ -506,6 +509,7 @@ fn plan() -> Plan {
             polarity: 1.0,
             calibration: Calibration::default(),
             zero_drift: None,
+            simulated_axes: Vec::new(),
         },
         limits: Limits {
             displacement: Interval {

@@ -65,6 +65,8 @@ pub struct Watched {
     reaches: Rc<RefCell<Vec<Reach>>>,
     /// The last targets \[m\]; before the first target every axis is at 0.
     target: Vec<f64>,
+    /// The axes whose targets are displacements: those in force control are behind them.
+    displaced: usize,
 }
 
 /// Sets the ends of ranges that are rounding errors of the largest range to 0.
@@ -94,6 +96,7 @@ impl Watched {
             own_speed,
             reaches: Rc::clone(&reaches),
             target: Vec::new(),
+            displaced: plan.degrees_of_freedom(),
         };
         let record = run::run(
             plan,
@@ -117,6 +120,7 @@ impl Watched {
     }
 
     fn note_target(&mut self, targets: &[f64], speed: f64) {
+        let targets = &targets[..self.displaced.min(targets.len())];
         let before = self.target.iter().copied().chain(std::iter::repeat(0.0));
         let increment = targets
             .iter()
@@ -137,11 +141,8 @@ impl Watched {
     fn note_reading(&self, reading: &Reading, at_rest: bool) {
         self.note(|reach| {
             reach.force = reading.force.iter().copied().fold(reach.force, widened);
-            reach.displacement = reading
-                .displacement
-                .iter()
-                .copied()
-                .fold(reach.displacement, widened);
+            let displaced = reading.displacement.iter().copied().take(self.displaced);
+            reach.displacement = displaced.fold(reach.displacement, widened);
             if at_rest && reach.moved {
                 let errors = reading
                     .displacement

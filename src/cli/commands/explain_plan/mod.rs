@@ -213,6 +213,18 @@ impl<'a> DryRun<'a> {
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }
+            if frame.is_some_and(|frame| !frame.storeys.is_empty()) {
+                let axes = self.plan.rig.axial_axes(&self.plan.limits);
+                rows.extend(axes.map(|(axis, limits)| {
+                    let text = specimen_text::axial_axis(
+                        self.plan,
+                        &axis,
+                        limits.displacement,
+                        &|value, dimension| stated(value, dimension),
+                    );
+                    vec!["axial load".to_owned(), text]
+                }));
+            }
             section(&format!("Specimen {}", specimen.name), rows);
             let hybrid = frame.filter(|frame| specimen_text::substructures(frame).is_some());
             let drawn = hybrid.map_or_else(Vec::new, substructures::drawing);

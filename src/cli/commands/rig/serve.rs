@@ -90,6 +90,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     };
     let protocol = protocol(&arguments.client, plan)?;
     named(arguments, plan)?;
+    without_axial_axes(plan)?;
     let attendance = real_rig::named(attendance, plan)?;
     let clients = ClientListener::open(arguments)?;
     let stop_request = StopRequest::default();
@@ -163,6 +164,18 @@ fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
         let name = &plan.rig.name;
         let message = format!("the rig `{name}` is a real rig, and is served only if it is named");
         return Err(Failure::command_line(message).help(format!("name it: --rig {name}")));
+    }
+    Ok(())
+}
+
+/// The protocols of clients have no message for an axial load.
+fn without_axial_axes(plan: &Plan) -> Result<(), Failure> {
+    if plan.rig.axial_axes(&plan.limits).next().is_some() {
+        let message = format!(
+            "the rig `{}` has an axial axis, whose load no client applies",
+            plan.rig.name
+        );
+        return Err(Failure::command_line(message).help("serve a rig without an axial axis"));
     }
     Ok(())
 }

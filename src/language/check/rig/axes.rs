@@ -1,4 +1,4 @@
-//! `axes = [axis(…), …]` of a real rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
+//! `axes = [axis(…), …]` of a rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
 //! an [`AxisPlan`] each. It also compares their number with the storeys of the specimen; `device` reads the devices.
 
 use crate::check::checker::{Checker, Context};
@@ -7,16 +7,16 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
 use crate::check::wording::axes_of;
 use crate::codes::E615;
-use crate::syntax::ast::ExprKind;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
+use super::axial;
 use super::device::{Device, device};
 use super::probe::probe;
-use super::{CheckedRig, context_of};
+use super::{CheckedRig, context_of, item_of};
 
 /// One axis, with the spans of its separate devices.
 pub struct CheckedAxis {
@@ -42,7 +42,21 @@ pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
         .iter()
         .map(|chosen| axis(checker, block, chosen, context))
         .collect();
-    axes.into_iter().collect()
+    let axes: Vec<CheckedAxis> = axes.into_iter().collect::<Option<_>>()?;
+    let is_axial: Vec<bool> = axes.iter().map(|axis| axis.plan.axial.is_some()).collect();
+    axial::check_order(checker, block, &is_axial)?;
+    Some(axes)
+}
+
+/// The axes that a virtual rig lists.
+pub fn simulated(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
+    if checker.field(block, schema::AXES.name).is_some() {
+        for chosen in checker.choices(block, schema::AXES.name)? {
+            axial::simulated(checker, &chosen);
+        }
+    }
+    let axes = axes(checker, block)?;
+    Some(axes.into_iter().map(|axis| axis.plan).collect())
 }
 
 fn axis<'a>(
@@ -94,6 +108,7 @@ fn axis<'a>(
     let index = |number: f64| number as usize - 1;
     let [storey, element] = [schema::AXIS_STOREY, schema::AXIS_ELEMENT]
         .map(|named| checker.optional_argument(chosen, named, context));
+    let axial = axial::axial(checker, chosen, displacement?, context);
     let plan = AxisPlan {
         storey: storey?.map(index),
         element: element?.map(index),
@@ -107,6 +122,7 @@ fn axis<'a>(
         calibration: calibration?,
         actuator: link(&actuator),
         load_cell: link(&load_cell),
+        axial: axial?,
     };
     Some(CheckedAxis {
         plan,
@@ -210,7 +226,9 @@ fn calibration<'a>(
 
 struct AnotherNumberOfAxes<'a> {
     rig: &'a str,
+    /// That move a storey sideways.
     axes: usize,
+    axial: usize,
     specimen: &'a str,
     storeys: usize,
     word: &'static str,
@@ -225,6 +243,7 @@ impl Violation for AnotherNumberOfAxes<'_> {
         let Self {
             rig,
             axes,
+            axial,
             specimen,
             storeys,
             word,
@@ -242,6 +261,10 @@ impl Violation for AnotherNumberOfAxes<'_> {
             _ => format!("the frame `{specimen}` has {storeys} storeys"),
         };
         let help = match storeys {
+            _ if axial > 0 => format!(
+                "list {} before the axial ones, the lowest storey first",
+                axes_of(storeys)
+            ),
             1 => "remove `axes`: a rig without it has one axis".to_owned(),
             _ => format!(
                 "list {storeys} axes, {}: axes = [{}]",
@@ -256,8 +279,13 @@ impl Violation for AnotherNumberOfAxes<'_> {
         Diagnostic::new(
             Self::CODE,
             format!(
-                "number of axes differs: rig `{rig}` has {}, {needs}",
-                axes_of(axes)
+                "number of axes differs: rig `{rig}` has {}{}, {needs}",
+                axes_of(axes),
+                if axial > 0 {
+                    " that move a storey sideways"
+                } else {
+                    ""
+                }
             ),
         )
         .at(at, axes_of(axes))
@@ -275,15 +303,18 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
     else {
         return;
     };
-    let (Some(axes), Some((_, written))) = (plan.axes(), checker.field(*block, schema::AXES.name))
-    else {
+    let Some((_, written)) = checker.field(*block, schema::AXES.name) else {
         return;
     };
+    let listed = plan.listed_axes();
+    let lateral = listed.iter().take_while(|axis| axis.axial.is_none());
+    let axes = lateral.count();
     let storeys = specimen.degrees_of_freedom();
     if axes != storeys {
         checker.report(AnotherNumberOfAxes {
             rig: &plan.name,
             axes,
+            axial: listed.len() - axes,
             specimen: &specimen.name,
             storeys,
             word: specimen
@@ -295,14 +326,11 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
         });
         return;
     }
-    if let (Some(frame), Some(link)) = (&specimen.frame, plan.link.as_real()) {
-        let at = |axis: usize| match &written.value.kind {
-            ExprKind::List { items, .. } => {
-                items.get(axis).map_or(written.value.span, |item| item.span)
-            }
-            _ => written.value.span,
-        };
-        check_members(checker, frame, &link.axes, &at);
+    if let Some(frame) = &specimen.frame {
+        check_members(checker, frame, &listed[..axes], *block);
+    }
+    if let Some(rig) = rig {
+        axial::check_storeys(checker, rig, specimen);
     }
 }
 
@@ -343,12 +371,7 @@ struct AxisOfAnotherFrame {
 }
 
 /// The storeys or elements that axes name are the tested ones, in their order.
-fn check_members(
-    checker: &mut Checker,
-    frame: &Frame,
-    axes: &[AxisPlan],
-    at: &dyn Fn(usize) -> Span,
-) {
+fn check_members(checker: &mut Checker, frame: &Frame, axes: &[AxisPlan], block: usize) {
     let has_elements = !frame.elements.is_empty();
     let word = frame.word_for_a_member();
     let parts: Vec<Part> = if frame.is_matrix_on_the_rig() {
@@ -365,6 +388,9 @@ fn check_members(
         .filter(|member| is_tested(*member))
         .collect();
     for (axis, plan) in axes.iter().enumerate() {
+        let Some(at) = item_of(checker, block, axis) else {
+            return;
+        };
         let (own, other) = if has_elements {
             (plan.element, plan.storey)
         } else {
@@ -375,7 +401,7 @@ fn check_members(
                 axis: axis + 1,
                 named: if has_elements { "storey" } else { "element" },
                 word,
-                at: at(axis),
+                at,
             });
             return;
         }
@@ -394,7 +420,7 @@ fn check_members(
                 axis: axis + 1,
                 word,
                 member: member + 1,
-                at: at(axis),
+                at,
                 label,
                 help: format!("{help}{}", known.collect::<Vec<String>>().join(", ")),
             });
@@ -409,7 +435,7 @@ fn check_members(
                 } else {
                     "from the ground up"
                 },
-                at: at(axis),
+                at,
                 moves: member + 1,
             });
             return;

@@ -2,6 +2,7 @@
 //! blocks of the plan. Out: the checked rig. It opens no port.
 
 pub mod axes;
+pub mod axial;
 pub mod axis_devices;
 pub mod device;
 pub mod dialect;
@@ -165,6 +166,7 @@ fn ideal() -> CheckedRig {
         polarity: 1.0,
         calibration: Calibration::default(),
         zero_drift: None,
+        simulated_axes: Vec::new(),
     };
     CheckedRig {
         plan,
@@ -237,6 +239,10 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         None => Some(None),
     };
     let drift = zero_drift::zero_drift(checker, block, kind);
+    let simulated_axes = match kind {
+        Some(RigKind::Virtual) => axes::simulated(checker, block),
+        _ => Some(Vec::new()),
+    };
     let name = checker.scope.blocks[block].name?.node.clone();
     let (mut calibration, drift) = (calibration?, drift?);
     // Rectangular distribution of the zero drift within its bound (JCGM 100:2008, 4.3.7).
@@ -248,6 +254,7 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         polarity: polarity?,
         calibration,
         zero_drift: drift,
+        simulated_axes: simulated_axes?,
     };
     Some(CheckedRig {
         plan,
@@ -302,6 +309,16 @@ pub fn context_of(checker: &Checker, block: usize, field: &str) -> Option<Contex
     checker
         .field(block, field)
         .map(|(entry, _)| checker.context_of(block, entry))
+}
+
+/// The span of an axis in the list of a rig.
+pub fn item_of(checker: &Checker, block: usize, axis: usize) -> Option<Span> {
+    let (_, written) = checker.field(block, schema::AXES.name)?;
+    let whole = written.value.span;
+    Some(match &written.value.kind {
+        ExprKind::List { items, .. } => items.get(axis).map_or(whole, |item| item.span),
+        _ => whole,
+    })
 }
 
 fn virtual_link<'a>(

@@ -19,6 +19,7 @@ use psd_text::source::Span;
 use psd_text::units::Dimension;
 
 use super::axes::{self, CheckedAxis};
+use super::axial;
 use super::device::{Device, device};
 use super::probe::probe;
 use super::{CheckedRig, axis_devices, context_of, kind};
@@ -75,6 +76,9 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         )?;
     }
     let axes = axes?;
+    let axial = axes.iter().filter(|axis| axis.plan.axial.is_some());
+    let controllers = axial.map(|axis| axis.actuator.as_ref().unwrap_or(&actuator));
+    axial::check_controllers(checker, controllers)?;
     axis_devices::check(checker, block, &actuator, load_cell.as_ref(), &axes)?;
     Some(RealLink {
         actuator: actuator.link,

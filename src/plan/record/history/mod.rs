@@ -23,6 +23,8 @@ pub enum History {
     Unload(Vec<UnloadStep>),
     /// The floors of a frame during the unloading.
     FrameUnload(Vec<UnloadStep>),
+    /// Its readings are those of the axial axes.
+    Preload,
     Inspect,
 }
 
@@ -64,6 +66,7 @@ impl History {
             | Self::Move(_)
             | Self::Unload(_)
             | Self::FrameUnload(_)
+            | Self::Preload
             | Self::Inspect => Vec::new(),
         };
         steps.retain(|(step, critical)| step > critical);

@@ -12,6 +12,7 @@ use crate::report::run::Run;
 use crate::report::status::days::last_day;
 use crate::report::status::particulars;
 use crate::report::wording::equipment as wording;
+use crate::report::wording::specimen as specimen_text;
 use psd_plan::record::equipment::{Channel, GivenIn};
 use psd_plan::schema::plan_block::EQUIPMENT;
 use psd_plan::{
@@ -251,6 +252,10 @@ fn simulated(run: &Run<'_>) -> Block {
         (wording::SIMULATED_ERRORS, simulated_errors(&link).into()),
         (wording::SETTLING, settling(run.plan.rig.settle).into()),
     ];
+    for (axis, limits) in run.plan.rig.axial_axes(&run.plan.limits) {
+        let text = specimen_text::axial_axis(run.plan, &axis, limits.displacement, &number::stated);
+        rows.push((wording::AXIAL_AXIS, text.into()));
+    }
     rows.extend(other_equipment(run));
     rows.extend(calibration_uncertainty(&run.plan.rig.calibration));
     pairs(rows)

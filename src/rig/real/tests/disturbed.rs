@@ -143,6 +143,7 @@ fn plan() -> RigPlan {
         polarity: 1.0,
         calibration,
         zero_drift: None,
+        simulated_axes: Vec::new(),
     }
 }
 

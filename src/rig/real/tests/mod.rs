@@ -86,6 +86,7 @@ fn plan() -> RigPlan {
         polarity: 1.0,
         calibration,
         zero_drift: None,
+        simulated_axes: Vec::new(),
     }
 }
 

@@ -9,6 +9,9 @@ pub(super) fn measured(record: &Record) -> String {
     let mut text = String::new();
     for procedure in &record.procedures {
         writeln!(text, "{} {:?}", procedure.name, procedure.results).unwrap();
+        for reading in &procedure.axial {
+            writeln!(text, "{:?} {:?}", reading.target, reading.force).unwrap();
+        }
         match &procedure.history {
             History::StiffnessRamp(history) => {
                 for step in &history.steps {
@@ -97,7 +100,7 @@ pub(super) fn measured(record: &Record) -> String {
                     .unwrap();
                 }
             }
-            History::Inspect => {}
+            History::Preload | History::Inspect => {}
         }
     }
     if let Some(drift) = &record.drift {

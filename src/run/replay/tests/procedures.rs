@@ -1,5 +1,6 @@
 //! A plan for every procedure that moves the rig.
 
+use crate::tests::procedures::frame::preload::preloaded;
 use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
@@ -158,6 +159,24 @@ pub(super) fn shaken_elements(mode: Mode) -> Plan {
     plan
 }
 
+/// The lower storey under an axial load, of which `unload` takes the load off.
+pub(super) fn shaken_under_a_load() -> Plan {
+    let mut plan = shaken(Mode::StepAndPause);
+    let frame = plan.specimens[0].frame.as_ref().unwrap();
+    let lower = |storeys: &mut [Storey]| storeys[0].height = Some(3.0);
+    plan.specimens[0].frame = Some(frame.with(lower));
+    plan.procedures.push(Procedure {
+        name: "rest".to_owned(),
+        kind: ProcedureKind::Unload(Unload {
+            specimen: 0,
+            stiffness: None,
+            within: None,
+            speed: None,
+        }),
+    });
+    preloaded(&plan, 0, 1e5, 1.0)
+}
+
 pub(super) fn escalating() -> Plan {
     let value = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
@@ -302,6 +321,7 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
             shaken_hybrid(Mode::StepAndPause),
         ),
         ("shake with elements", shaken_elements(Mode::StepAndPause)),
+        ("shake under an axial load", shaken_under_a_load()),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("storey without a stop", struck_without_a_stop()),
         ("unload", unloading()),

@@ -1,9 +1,11 @@
-//! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, and weights on the floors.
+//! Frames: unloading, impact series on a storey, frames of which the rig carries a part at any scale, weights on the floors, and axial loads
+//! on the rig.
 
 mod elements;
 pub(crate) mod escalate;
 pub(crate) mod gravity;
 pub(crate) mod hybrid;
+pub(crate) mod preload;
 pub(crate) mod scaled;
 mod unloading;
 
@@ -36,6 +38,7 @@ pub(super) fn storey(index: usize, post_yield_ratio: f64) -> Storey {
         coulomb: 0.0,
         gravity: 0.0,
         part: Part::TESTED,
+        axial_load: 0.0,
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) const SCALES: [Scale; 4] = [
     of(0.4, 0.3, 3.0),
 ];
 
-const fn of(displacement: f64, force: f64, represents: f64) -> Scale {
+pub(super) const fn of(displacement: f64, force: f64, represents: f64) -> Scale {
     Scale {
         displacement,
         force,

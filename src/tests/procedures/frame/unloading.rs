@@ -176,6 +176,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
         coulomb: 0.2,
         gravity: 0.0,
         part: Part::TESTED,
+        axial_load: 0.0,
     };
     frame.specimens[0].frame = Some(Frame::of_storeys(vec![floor]));
     let unload = Unload {

@@ -423,6 +423,7 @@ fn storey<'a>(
         damping: spring.damping,
         coulomb: spring.coulomb,
         part: spring.part,
+        axial_load: 0.0,
     })
 }
 

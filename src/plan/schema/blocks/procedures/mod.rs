@@ -4,7 +4,8 @@ mod common;
 pub mod tracking;
 
 use crate::procedures::{
-    cycle, damping_sweep, escalate, impact, inspect, move_to, shake, stiffness_ramp, unload,
+    cycle, damping_sweep, escalate, impact, inspect, move_to, preload, shake, stiffness_ramp,
+    unload,
 };
 use crate::schema::types::BlockKind;
 pub use common::{SPECIMEN, SPEED, STIFFNESS};
@@ -19,5 +20,6 @@ pub const BLOCKS: &[&BlockKind] = &[
     &escalate::block::BLOCK,
     &unload::block::BLOCK,
     &move_to::block::BLOCK,
+    &preload::block::BLOCK,
     &inspect::block::BLOCK,
 ];

@@ -17,6 +17,44 @@ use psd_text::units::Dimension;
 pub const AXIS_STOREY: &str = "storey";
 pub const AXIS_ELEMENT: &str = "element";
 
+/// The argument of an axis that loads a storey along its height.
+pub const AXIAL: &str = "axial";
+
+pub const P_DELTA: Field = Field::quantity(
+    "p_delta",
+    Dimension::NUMBER,
+    "share of N u/h in the lateral reading: 100 % if the axial load stays vertical, 0 % if it points at the base of the column",
+)
+.at_least_zero();
+
+pub const CONTROL: Field = Field::choice(
+    "control",
+    CONTROLS,
+    "controlled quantity of an axial axis; every other axis controls its displacement",
+);
+
+pub const CONTROL_RATE: Field = Field::quantity(
+    "rate",
+    Dimension::FORCE_RATE,
+    "rate at which the axial force changes",
+)
+.required("rate: 5 kN/s")
+.above_zero();
+
+pub const CONTROL_TOLERANCE: Field = Field::quantity(
+    "tolerance",
+    Dimension::FORCE,
+    "largest difference of the axial force from its target",
+)
+.required("tolerance: 0.5 kN")
+.above_zero();
+
+const CONTROLS: &[Variant] = &[Variant::with(
+    "force",
+    &[CONTROL_RATE, CONTROL_TOLERANCE],
+    "force control: the controller holds the axial force",
+)];
+
 /// The entries of one axis, each in place of the rig's own.
 pub(super) const AXIS: &[Variant] = &[Variant::with(
     "axis",
@@ -158,6 +196,14 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
             "element of a frame of matrices that the axis moves, counted from the first",
         )
         .default_in_words("the tested elements in their order"),
+        Field::count(
+            AXIAL,
+            1.0,
+            64.0,
+            "storey that the axis loads along its height; such axes are last in the list",
+        ),
+        CONTROL,
+        P_DELTA,
     ],
     "actuator with its load cell",
 )];

@@ -6,7 +6,9 @@ mod forms;
 use super::devices::{LONGEST_WAIT, SERIAL, TCP};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use axis::AXIS;
-pub use axis::{AXIS_ELEMENT, AXIS_STOREY};
+pub use axis::{
+    AXIAL, AXIS_ELEMENT, AXIS_STOREY, CONTROL, CONTROL_RATE, CONTROL_TOLERANCE, P_DELTA,
+};
 pub use forms::{
     AFTER, DISPLACEMENT_DRIFT, FORCE_DRIFT, FORCE_RATE, FORCE_RESOLUTION, LAG, OVER, PROBE,
     PROBED_STIFFNESS, SEED, SETTLED_FOR, SETTLED_WITHIN, TIMEOUT, TRACKING, ZERO_FORCE,
@@ -100,10 +102,9 @@ pub const LIMITS: Field = Field::reference(
 pub const AXES: Field = Field::choices(
     "axes",
     AXIS,
-    "actuators with their load cells, one per tested storey from the ground up",
+    "actuators with their load cells, one per tested storey from the ground up; then the axial ones",
 )
-.default_in_words("one axis")
-.of_real_rigs();
+.default_in_words("one axis");
 
 pub const POLARITY: Field =
     Field::choice("polarity", POLARITIES, "polarity of displacement and force")

@@ -1,0 +1,63 @@
+//! `preload`: the axial force grows at the rate of its axis, in tenths with a reading each. The first tenth is the check of the axis: at
+//! each reading the guard compares the force with its target, and the displacement with its band. No lateral axis moves.
+
+use crate::run::Performed;
+use crate::run::inputs::Inputs;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use psd_plan::Preload;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::procedures::preload::block as schema;
+use psd_plan::record::{AxialReading, EventKind, History};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
+
+/// Steps of the force.
+pub(crate) const STEPS: u32 = 10;
+
+pub(crate) fn perform(
+    plan: &Preload,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    let stop = load(plan, inputs, session).err();
+    let at_the_end: Option<AxialReading> = session
+        .guard
+        .axial_readings()
+        .iter()
+        .rfind(|reading| reading.storey == plan.storey as u64 + 1)
+        .copied()
+        .filter(|_| stop.is_none());
+    Performed {
+        history: History::Preload,
+        results: vec![
+            schema::AXIAL_FORCE.found(at_the_end.map(|reading| reading.force)),
+            schema::AXIAL_DISPLACEMENT.found(at_the_end.map(|reading| reading.displacement)),
+        ],
+        stop,
+    }
+}
+
+fn load(plan: &Preload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
+    inputs.positive(schema::FORCE.name, &Constant(plan.force), Dimension::FORCE)?;
+    for step in 1..=STEPS {
+        let force = plan.force * f64::from(step) / f64::from(STEPS);
+        let (reading, stop) = session.load_axially(Some(plan.storey), force)?;
+        if let Some(stop) = stop {
+            return Err(stop);
+        }
+        if step == 1 {
+            session.event(
+                EventKind::Note,
+                format!(
+                    "axial axis of storey {}: the force followed to {}",
+                    plan.storey + 1,
+                    readable(force, Dimension::FORCE)
+                ),
+            );
+        }
+        let wall_time = session.guard.time();
+        session.measured_all(u64::from(step), wall_time, &reading)?;
+    }
+    Ok(())
+}
