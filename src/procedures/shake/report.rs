@@ -146,12 +146,29 @@ pub(crate) fn integrated(
         (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
         (ShakeDamping::Modal(_), true) => "Each mode has a separate damping ratio.",
     };
-    let weights = if frame.is_some_and(|frame| !frame.axial_loads().is_empty()) {
-        " P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
-    } else {
-        ""
-    };
-    format!("Integrated by {integrator}. {damping}{weights}")
+    let p_delta = frame.map_or("", p_delta);
+    format!("Integrated by {integrator}. {damping}{p_delta}")
+}
+
+/// Where the P-Δ of the storeys comes from: the weights in the computer, or the axial load of the rig in its reading.
+fn p_delta(frame: &Frame) -> &'static str {
+    let loads = frame.axial_loads();
+    let is_computed = loads
+        .iter()
+        .zip(&frame.storeys)
+        .any(|(load, storey)| (load - storey.axial_load).abs() > 1e-9 * load.abs());
+    match (frame.has_axial_load(), is_computed) {
+        _ if loads.is_empty() => "",
+        (false, _) => {
+            " P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
+        }
+        (true, false) => {
+            " P-Δ was in the reading of the rig, by the axial load on the specimen; none was computed. Base shear is net of P-Δ."
+        }
+        (true, true) => {
+            " P-Δ was in part in the reading of the rig, by the axial load on the specimen; the rest was computed from the weights of the floors. Base shear is net of P-Δ."
+        }
+    }
 }
 
 /// Largest acceleration as applied beside that of the record over the same time and with the same factor.
@@ -449,4 +466,30 @@ fn energy_balance(history: &ShakeHistory) -> Block {
         "input, −∫Mι üg dX"
     };
     energy::balance_table((name, e.input + e.gravity), &parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use psd_plan::{Behaviour, Storey};
+
+    #[test]
+    fn the_report_says_where_the_p_delta_comes_from() {
+        let storey = |gravity, axial_load| Storey {
+            height: Some(3.0),
+            gravity,
+            axial_load,
+            ..Storey::new(1e4, 1e6, Behaviour::Elastic { stiffness: 1e6 })
+        };
+        let said = |gravity, axial_load| {
+            let text = p_delta(&Frame::of_storeys(vec![storey(gravity, axial_load)]));
+            ["carried no axial load", "none was computed", "the rest was"]
+                .map(|words| text.contains(words))
+        };
+        assert_eq!(said(0.0, 0.0), [false; 3]);
+        assert_eq!(said(1e5, 0.0), [true, false, false]);
+        assert_eq!(said(1e5, 1e5), [false, true, false]);
+        assert_eq!(said(0.0, 1e5), [false, true, false]);
+        assert_eq!(said(1e5, 4e4), [false, false, true]);
+    }
 }

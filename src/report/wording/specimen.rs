@@ -105,11 +105,17 @@ pub fn drawn_storeys(frame: &Frame) -> Vec<DrawnStorey> {
         let axis = tested.next();
         let stands = axis.as_ref().is_some_and(|((_, stands), _)| *stands);
         let base = if stands { ", on the strong floor" } else { "" };
+        let loaded = frame.storeys.get(number - 1);
+        let load = if loaded.is_some_and(|storey| storey.axial_load != 0.0) {
+            ", under an axial load"
+        } else {
+            ""
+        };
         let on_the_rig = stiffness(scale.stiffness_on_the_rig(storey.stiffness));
         DrawnStorey {
             number,
             axis: axis.map(|(_, axis)| axis),
-            part: format!("tested{}{base}", at_scale(&scale)),
+            part: format!("tested{}{base}{load}", at_scale(&scale)),
             stiffness: if on_the_rig == own {
                 own
             } else {
