@@ -88,6 +88,8 @@ pub struct StepReport {
     pub axes: Vec<AxisReport>,
     /// Speed of the last motion of the rig \[m/s\]; only for display.
     pub speed: Option<f64>,
+    /// Largest force of the axial axes \[N\]; None without one; only for display.
+    pub axial_force: Option<f64>,
     /// Energy error over the input energy; only for procedures that integrate.
     pub energy_error: Option<f64>,
     /// The tracking errors; only for procedures that integrate.
@@ -133,6 +135,7 @@ impl StepReport {
             time,
             axes: commands.iter().zip(read).map(axis).collect(),
             speed: None,
+            axial_force: None,
             energy_error: None,
             tracking: None,
             tracking_energy_error: None,

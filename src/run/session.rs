@@ -195,6 +195,7 @@ impl<'run> Session<'run> {
     pub(crate) fn step_done(&mut self, report: &mut StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
         report.speed = self.guard.speed();
+        report.axial_force = self.guard.axial_force();
         self.observer.step_done(report);
         loop {
             self.stop_if_requested()?;

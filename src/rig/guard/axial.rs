@@ -139,6 +139,13 @@ impl Guard<'_> {
         loads.filter(|(_, force)| *force != 0.0)
     }
 
+    /// Largest force of the axial axes as they were read last \[N\]; None without a reading.
+    #[must_use]
+    pub fn axial_force(&self) -> Option<f64> {
+        let last = self.axial.readings.iter().rev().take(self.axial.count());
+        last.map(|reading| reading.force).reduce(f64::max)
+    }
+
     /// The readings of the axial axes since they were taken last.
     #[must_use]
     pub fn axial_readings(&self) -> &[AxialReading] {

@@ -123,6 +123,8 @@ pub struct Lines {
     last: Option<u64>,
     /// Largest |X| \[m\] and |R| \[N\] of the steps.
     largest: (f64, f64),
+    /// The force of the axial axes at the last step \[N\].
+    axial_force: Option<f64>,
     /// The reading that broke a limit: `force 1.003 kN`.
     stopped_by: Option<String>,
 }
@@ -178,6 +180,9 @@ impl Lines {
                 self.shown.of_rig
             );
         }
+        if let Some(force) = self.axial_force {
+            let _ = write!(text, ", axial force {}", readable(force, Dimension::FORCE));
+        }
         if let Some(reading) = &self.stopped_by {
             let _ = write!(text, "; stopped by {reading}");
         }
@@ -202,6 +207,7 @@ impl Observer for Lines {
 
     fn step_done(&mut self, report: &StepReport) {
         self.last = Some(report.step);
+        self.axial_force = report.axial_force;
         for axis in &report.axes {
             self.largest = (
                 self.largest.0.max(axis.displacement.abs()),
@@ -247,6 +253,15 @@ mod tests {
         assert_eq!(
             lines.line("k0"),
             "  k0: stiffness ramp, 2 steps, largest X 2.000 mm, largest R 600.0 N\n"
+        );
+        lines.procedure_started("down", "preload", Some(1));
+        lines.step_done(&StepReport {
+            axial_force: Some(262_500.0),
+            ..step(1, 0.1, 0.0, 40.0)
+        });
+        assert_eq!(
+            lines.line("down"),
+            "  down: preload, 1 step, largest X 0 mm, largest R 40.00 N, axial force 262.5 kN\n"
         );
         lines.procedure_started("look", "inspect", Some(0));
         lines.event(&Event {
