@@ -261,7 +261,7 @@ mod tests {
         });
         assert_eq!(
             lines.line("down"),
-            "  down: preload, 1 step, largest X 0 mm, largest R 40.00 N, axial force 262.5 kN\n"
+            "  down: preload, 1 step, largest X 2.000 µm, largest R 40.00 N, axial force 262.5 kN\n"
         );
         lines.procedure_started("look", "inspect", Some(0));
         lines.event(&Event {
