@@ -161,7 +161,7 @@ struct Simulation<'a> {
     E671,
     "`{keyword}` unloads storeys, but frame `{specimen}` has elements"
 )]
-#[help("use `shake` or `impact`: a second one begins where K and the elements balance")]
+#[help("use `shake` or `impact`, and `unload` after it")]
 struct UnloadsElements<'a> {
     keyword: &'a str,
     specimen: &'a str,

@@ -52,7 +52,7 @@ pub(crate) struct Recorded {
     pub time_spans: Option<(f64, f64)>,
     /// Results that have an uncertainty budget even if no requirement reads any.
     pub budgeted: &'static [&'static str],
-    /// The name of the entries of its lists, if the names of the lists do not give it.
+    /// The name of the entries of its lists, if the names of the lists do not give it; of elements, whatever the name.
     pub entries: &'static str,
     /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,

@@ -206,6 +206,7 @@ pub(crate) fn recorded(history: &History) -> Recorded {
         History::Cycle(_) => cycle::facts::recorded(),
         History::Escalate(_) => escalate::facts::recorded(),
         History::FrameUnload(_) => unload::facts::recorded_frame(),
+        History::ElementUnload(_) => unload::facts::recorded_elements(),
         History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {
             Recorded::default()
         }
@@ -275,6 +276,7 @@ pub(crate) fn attribute(
         | History::Move(_)
         | History::Unload(_)
         | History::FrameUnload(_)
+        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => return,
     }
@@ -357,6 +359,7 @@ pub(crate) fn chart(
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
         History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
         History::FrameUnload(steps) => shake::figures::unloading_chart(run, name, steps, kind),
+        History::ElementUnload(steps) => shake::figures::unloaded_elements(run, name, steps, kind),
         History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => None,
     }
 }
@@ -373,6 +376,7 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
         | History::Move(_)
         | History::Unload(_)
         | History::FrameUnload(_)
+        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => None,
     }
@@ -404,6 +408,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
         History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
+        History::ElementUnload(steps) => vec![unload::tables::of_elements(name, steps, scaled)],
         History::Preload | History::Inspect => Vec::new(),
     };
     tables.extend(preload::tables::table(&procedure.name, &procedure.axial));
@@ -459,6 +464,9 @@ pub(crate) fn report(
         History::FrameUnload(steps) => {
             shake::report::unloaded(run, index, procedure, steps, body);
         }
+        History::ElementUnload(steps) => {
+            shake::report::unloaded_elements(run, procedure, steps, body);
+        }
         History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {}
     }
 }
@@ -511,6 +519,10 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
         History::Unload(steps) | History::FrameUnload(steps) => {
             let steps = steps.iter();
             steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
+        }
+        History::ElementUnload(steps) => {
+            let steps = steps.iter();
+            steps.for_each(|step| give(&[], &[], &step.elements()));
         }
         History::Preload | History::Inspect => {}
     }

@@ -152,6 +152,58 @@ impl Session<'_> {
         self.floors_after(loaded)
     }
 
+    /// [`Session::floors_at_rest`] of what is unloaded: of the floors, or of the elements of a frame of matrices. Of elements the rig alone
+    /// moves: K and the computed elements do not come to balance with it.
+    pub(crate) fn loaded_at_rest(&mut self) -> Result<(Vec<f64>, Reading), Stop> {
+        if self.assemblies().and_then(Assemblies::elements).is_none() {
+            return self.floors_at_rest();
+        }
+        let read = self.guard.read()?;
+        if let Some(hybrid) = &mut self.hybrid {
+            hybrid.substructures.unload();
+            hybrid.axes = read.clone();
+        }
+        Ok((self.loaded_commanded(), self.loaded(read)))
+    }
+
+    /// Moves what is unloaded to these displacements \[m\], as [`Session::floors_go_to`].
+    pub(crate) fn loaded_go_to(
+        &mut self,
+        positions: &[f64],
+        speed: Option<f64>,
+    ) -> Result<(), RigFault> {
+        let of_elements = self.assemblies().filter(|of| of.elements().is_some());
+        match of_elements.map(|of| of.axes_of_elements(positions.to_vec())) {
+            Some(axes) => self.go_to_all(&axes, speed),
+            None => self.floors_go_to(positions, speed),
+        }
+    }
+
+    /// The last targets of what is unloaded \[m\].
+    pub(crate) fn loaded_commanded(&self) -> Vec<f64> {
+        let hybrid = self.hybrid.as_ref();
+        let elements = hybrid.and_then(|hybrid| hybrid.elements_alone(self.guard.commanded()));
+        elements.map_or_else(
+            || self.floors_commanded().to_vec(),
+            |elements| elements.displacement,
+        )
+    }
+
+    /// [`Session::read_after`] of what is unloaded.
+    pub(crate) fn loaded_after(
+        &mut self,
+        motion: Result<(), RigFault>,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
+        let (floors, stop) = self.floors_after(motion)?;
+        Ok((self.loaded(floors), stop))
+    }
+
+    fn loaded(&self, floors: Reading) -> Reading {
+        let hybrid = self.hybrid.as_ref();
+        let elements = hybrid.and_then(|hybrid| hybrid.elements_alone(&hybrid.axes.displacement));
+        elements.unwrap_or(floors)
+    }
+
     /// The last targets of the floors \[m\].
     pub(crate) fn floors_commanded(&self) -> &[f64] {
         self.hybrid

@@ -41,11 +41,25 @@ impl Hybrid {
 
     /// The elements of a frame of matrices at the last reading of the axes.
     pub fn elements(&self) -> Vec<ElementReading> {
-        let axes = (
-            self.axes.displacement.as_slice(),
-            self.axes.force.as_slice(),
-        );
+        self.elements_at(&self.axes.displacement)
+    }
+
+    /// The same with the axes at other displacements \[m\].
+    fn elements_at(&self, axes: &[f64]) -> Vec<ElementReading> {
+        let axes = (axes, self.axes.force.as_slice());
         self.substructures.elements_read(axes)
+    }
+
+    /// Deformations \[m\] and forces \[N\] of the elements with the axes at these displacements \[m\]; None for storeys.
+    pub fn elements_alone(&self, axes: &[f64]) -> Option<Reading> {
+        self.substructures.assemblies().elements()?;
+        let elements = self.elements_at(axes);
+        Some(Reading {
+            time: self.axes.time,
+            displacement: elements.iter().map(|read| read.deformation).collect(),
+            force: elements.iter().map(|read| read.force).collect(),
+            raw: Vec::new(),
+        })
     }
 
     /// The same with the axes at other displacements \[m\].

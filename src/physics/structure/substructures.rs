@@ -343,6 +343,14 @@ impl Assemblies {
         })
     }
 
+    /// Displacements of the axes \[m\], from the deformations of all elements of a frame of matrices.
+    #[must_use]
+    pub fn axes_of_elements(&self, deformation: Vec<f64>) -> Vec<f64> {
+        self.on_the_rig(deformation, |scale, prototype| {
+            prototype * scale.displacement
+        })
+    }
+
     /// Forces of the axes \[N\], from the restoring forces of the floors.
     #[must_use]
     pub fn forces_of(&self, floors: &[f64]) -> Vec<f64> {
@@ -364,9 +372,7 @@ impl Assemblies {
         }
         let of = |value: fn(&ElementReading) -> f64| readings.iter().map(value).collect();
         [
-            self.on_the_rig(of(|read| read.deformation), |scale, prototype| {
-                prototype * scale.displacement
-            }),
+            self.axes_of_elements(of(|read| read.deformation)),
             self.on_the_rig(of(|read| read.force), |scale, prototype| {
                 prototype / scale.forces()
             }),
@@ -434,9 +440,16 @@ impl Assemblies {
         }
     }
 
-    /// The axes of which the measured displacement of a floor is the sum, each with the factor from the rig to the prototype.
+    /// The axes of which the measured displacement of a floor is the sum, each with the factor from the rig to the prototype. An element
+    /// has its own deformation.
     #[must_use]
     pub fn positions_of(&self, floor: usize) -> Vec<(usize, f64)> {
+        if self.elements.is_some() {
+            let own = self.axis_of(floor).into_iter();
+            return own
+                .map(|axis| (axis, self.scales[floor].displacements()))
+                .collect();
+        }
         let (mut axes, mut next) = (Vec::new(), Some(floor));
         while let Some(floor) = next {
             next = match self.axis_of(floor) {
@@ -451,13 +464,14 @@ impl Assemblies {
     }
 
     /// The axes of which the restoring force of a floor is the sum, each with the factor from the rig to the prototype and the sign of its
-    /// force: its own, and those of the assembly that stands on the floor.
+    /// force: its own, and those of the assembly that stands on the floor. An element has its own force.
     #[must_use]
     pub fn forces_at(&self, floor: usize) -> Vec<(usize, f64)> {
         let forces = |storey: usize| self.scales[storey].forces();
         let own = self.axis_of(floor).map(|axis| (axis, forces(floor)));
         let standing = self.tested().enumerate();
-        let standing = standing.filter(|(_, storey)| self.base_of(*storey) == Some(floor));
+        let standing = standing
+            .filter(|(_, storey)| self.elements.is_none() && self.base_of(*storey) == Some(floor));
         own.into_iter()
             .chain(standing.map(|(axis, storey)| (axis, -forces(storey))))
             .collect()
@@ -523,11 +537,16 @@ impl Substructures {
 
     /// Every computed storey comes to rest at zero shear. The axes hold these displacements \[m\].
     pub fn rest(&mut self, axes: &[f64]) {
+        self.unload();
+        self.settle(axes);
+    }
+
+    /// Every computed storey comes to rest at zero shear, and every computed element at zero force.
+    pub fn unload(&mut self) {
         self.computed
             .iter_mut()
             .flatten()
             .for_each(ComputedStorey::rest);
-        self.settle(axes);
     }
 
     /// A frame of matrices comes to the displacements at which K and its computed elements balance, where the axes hold the tested ones
@@ -628,14 +647,14 @@ impl Substructures {
         let members = elements.ends.iter().zip(&self.computed);
         let read = members.zip(&self.assemblies.scales);
         read.map(|((ends, computed), scale)| {
-            let target = deformation(*ends, &self.imposed);
             if let Some(element) = computed {
                 return ElementReading {
-                    target,
-                    deformation: target,
+                    target: element.drift,
+                    deformation: element.drift,
                     force: element.shear,
                 };
             }
+            let target = deformation(*ends, &self.imposed);
             let (displacement, force) = axes.next().unwrap_or((&0.0, &0.0));
             ElementReading {
                 target,

@@ -13,7 +13,9 @@ use psd_plan::procedures::shake::block as schema;
 use psd_plan::procedures::unload::block as unload;
 use psd_plan::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 use psd_plan::schema::ResultKind;
-use psd_plan::{Frame, Ground, Integrator, Link, ProcedureKind, Shake, ShakeDamping};
+use psd_plan::{
+    Element, Frame, Ground, Integrator, Link, Part, ProcedureKind, Shake, ShakeDamping,
+};
 use psd_text::units::Dimension;
 use psd_text::units::display::significant;
 
@@ -433,6 +435,66 @@ pub(crate) fn unloaded(
     body.push(Block::Table(Table {
         columns,
         rows: (0..drift.len()).map(row).collect(),
+    }));
+}
+
+/// The same of the elements of a frame of matrices.
+pub(crate) fn unloaded_elements(
+    run: &Run<'_>,
+    procedure: &ProcedureRecord,
+    steps: &[UnloadStep],
+    body: &mut Vec<Block>,
+) {
+    let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
+        return;
+    };
+    let moves = steps.len() - 1;
+    let frame = run.plan.frame_on_the_rig();
+    let is_computed = |element: &Element| element.part == Part::Computed;
+    let computed = if frame.is_some_and(|frame| frame.elements.iter().any(is_computed)) {
+        " The rig alone moved: a computed element is at the deformation at which its model has no force."
+    } else {
+        ""
+    };
+    body.push(Block::paragraph(format!(
+        "The axes of all tested elements moved together to zero force, in {moves} {}, each with the stiffness last measured.{computed}",
+        if moves == 1 { "move" } else { "moves" }
+    )));
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let travel = whole(&first.displacement).max(whole(&last.displacement));
+    let loaded = whole(&first.restoring_force);
+    let columns = vec![
+        Column::words("Element", 1),
+        Column::numbers("Deformation before"),
+        Column::numbers("Residual deformation"),
+        Column::numbers("Force before"),
+        Column::numbers("Remaining force"),
+    ];
+    let row = |element: usize| -> Vec<Text> {
+        let length = |step: &UnloadStep| {
+            number::part_of(step.displacement[element], travel, 4, Dimension::LENGTH)
+        };
+        let force = |step: &UnloadStep| {
+            number::part_of(step.restoring_force[element], loaded, 4, Dimension::FORCE)
+        };
+        let known = |kind: ResultKind, other: String| {
+            known_entry(procedure, kind, element).unwrap_or_else(|| other.into())
+        };
+        vec![
+            (element + 1).to_string().into(),
+            length(first).into(),
+            known(unload::RESIDUAL_DRIFT, length(last)),
+            force(first).into(),
+            known(unload::RESIDUAL_SHEAR, force(last)),
+        ]
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: (0..last.displacement.len()).map(row).collect(),
     }));
 }
 

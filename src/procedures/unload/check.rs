@@ -1,4 +1,4 @@
-//! `unload NAME { … }`: of one degree of freedom, or of all floors of a frame together.
+//! `unload NAME { … }`: of one degree of freedom, or of all floors or elements of a frame together.
 
 use crate::procedures::common::violations::NoUseOnAFrame;
 use psd_language::check::checker::Checker;
@@ -21,7 +21,12 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         checker.optional(block, SPEED.name),
     );
     if let (true, Some((_, entry))) = (of_frame, checker.field(block, STIFFNESS.name)) {
-        let help = "remove it: the storeys of the frame have stiffnesses";
+        let frame = tested.and_then(|tested| frame::frame(checker, tested));
+        let help = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+            "remove it: the elements of the frame have stiffnesses"
+        } else {
+            "remove it: the storeys of the frame have stiffnesses"
+        };
         return checker.fail(NoUseOnAFrame {
             field: STIFFNESS.name,
             of: "the unloading of a frame",

@@ -17,7 +17,6 @@ pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     }
     Facts {
         tests: Tests::Frame,
-        unloads_storeys: true,
         figures: figures::UNLOADING_FIGURES,
         headline: vec![schema::RESIDUAL_DRIFT.name],
         ..shared
@@ -28,5 +27,12 @@ pub(crate) fn recorded_frame() -> Recorded {
     Recorded {
         lists_are_tabled: true,
         ..Recorded::default()
+    }
+}
+
+pub(crate) fn recorded_elements() -> Recorded {
+    Recorded {
+        entries: "element",
+        ..recorded_frame()
     }
 }

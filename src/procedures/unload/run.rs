@@ -1,4 +1,4 @@
-//! `unload`: moves one degree of freedom, or all floors of a frame together, to zero restoring force. In: the stiffness with which the
+//! `unload`: moves one degree of freedom, or all floors or elements of a frame together, to zero restoring force. In: the stiffness with which the
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
 //!
@@ -12,6 +12,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::substructures::on_the_rig;
 use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::record::{EventKind, History, NamedResult, Rest, UnloadStep};
@@ -46,6 +47,7 @@ pub(crate) fn perform(
             History::Unload(steps.into_iter().skip(1).collect()),
             of_farthest(rest),
         ),
+        None if has_elements(whole) => (History::ElementUnload(steps), element_results(rest)),
         None => (History::FrameUnload(steps), frame_results(rest)),
     };
     Performed {
@@ -55,8 +57,21 @@ pub(crate) fn perform(
     }
 }
 
+fn has_elements(whole: &Plan) -> bool {
+    let frame = whole.frame_on_the_rig();
+    frame.is_some_and(|frame| !frame.elements.is_empty())
+}
+
 /// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
+    if !frame.elements.is_empty() {
+        let elements = frame.elements.iter();
+        let tested = on_the_rig(frame).map(|(element, _)| element.stiffness);
+        return Ok(Unloading::of_elements(
+            elements.map(|element| element.stiffness).collect(),
+            tested.fold(0.0, f64::max),
+        ));
+    }
     let unfit = |reason: String| Stop::bad_input(SPECIMEN.name, 0.0, Dimension::NUMBER, reason);
     let properties = FrameProperties::of(frame, &Damping::None);
     let properties =
@@ -98,12 +113,24 @@ pub(crate) fn withhold_position<'a>(
     }
 }
 
+fn list(kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>) -> NamedResult {
+    let (values, contributions) = known.unzip();
+    kind.found_list_by(values, contributions.unwrap_or_default())
+}
+
+/// In the order of the reference.
+fn element_results(rest: Option<&Rest>) -> Vec<NamedResult> {
+    let mut results = of_farthest(rest);
+    let deformation = rest.map(|rest| (rest.displacement.clone(), rest.position_contributions()));
+    let mut deformation = list(schema::RESIDUAL_DRIFT, deformation);
+    withhold_position(rest, [&mut deformation]);
+    let force = rest.map(|rest| (rest.force.clone(), rest.force_contributions()));
+    results.extend([deformation, list(schema::RESIDUAL_SHEAR, force)]);
+    results
+}
+
 /// In the order of the reference.
 fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
-    let list = |kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>| {
-        let (values, contributions) = known.unzip();
-        kind.found_list_by(values, contributions.unwrap_or_default())
-    };
     let mut results = of_farthest(rest);
     let mut positions = [
         list(
@@ -183,7 +210,7 @@ pub(crate) fn to_rest(
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let (start, mut at) = session.floors_at_rest()?;
+    let (start, mut at) = session.loaded_at_rest()?;
     let secants = vec![None; at.force.len()];
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.floor_noise();
@@ -208,13 +235,13 @@ pub(crate) fn to_rest(
             path.moves(&at.force)
         };
         let target: Vec<f64> = session
-            .floors_commanded()
-            .iter()
+            .loaded_commanded()
+            .into_iter()
             .zip(increments)
             .map(|(position, increment)| position + increment)
             .collect();
-        let moved = session.floors_go_to(&target, speed);
-        let (reached, broken) = session.floors_after(moved)?;
+        let moved = session.loaded_go_to(&target, speed);
+        let (reached, broken) = session.loaded_after(moved)?;
         let secants = path.learn(loaded(&at), loaded(&reached));
         let kept = step_of(step, target, &reached, secants, session);
         let wall_time = kept.wall_time;

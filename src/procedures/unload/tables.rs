@@ -1,8 +1,8 @@
-//! The table of an unloading: a row a move of one degree of freedom, or a row a floor of a frame. In: steps. Out: columns.
+//! The table of an unloading: a row a move of one degree of freedom, or a row a floor or an element of a frame. In: steps. Out: columns.
 
 use crate::procedures::shake;
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
-use crate::report::tables::{Table, numeric, written};
+use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::record::UnloadStep;
 use psd_plan::schema::{Column, columns};
@@ -17,10 +17,90 @@ const MOVES: &[TableColumn<UnloadStep>] = &[
     Optional(columns::TANGENT_STIFFNESS, |step| step.tangent_stiffness[0]),
 ];
 
-/// The numeric columns of both tables.
+/// An element of a frame of matrices after a move.
+struct ElementRow<'a> {
+    step: &'a UnloadStep,
+    element: usize,
+    /// Command and measured displacement \[m\], and force \[N\] of its axis.
+    on_the_rig: Option<[f64; 3]>,
+}
+
+/// The columns of the elements; those of the rig only if a specimen has a scale.
+fn elements<'a>(is_scaled: bool) -> Vec<TableColumn<ElementRow<'a>>> {
+    let mut columns = vec![
+        Integer(columns::STEP, |row: &ElementRow<'a>| row.step.step),
+        Integer(columns::ELEMENT, |row| row.element as u64 + 1),
+        Number(columns::WALL_TIME, |row| row.step.wall_time),
+        Number(columns::COMMAND, |row| row.step.command[row.element]),
+        Number(columns::DEFORMATION, |row| {
+            row.step.displacement[row.element]
+        }),
+        Number(columns::RESTORING_FORCE, |row| {
+            row.step.restoring_force[row.element]
+        }),
+        Optional(columns::TANGENT_STIFFNESS, |row| {
+            row.step.tangent_stiffness[row.element]
+        }),
+    ];
+    if is_scaled {
+        columns.extend([
+            Optional(columns::COMMAND_ON_THE_RIG, |row: &ElementRow<'a>| {
+                row.on_the_rig.map(|[command, ..]| command)
+            }),
+            Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
+                row.on_the_rig.map(|[_, displacement, _]| displacement)
+            }),
+            Optional(columns::FORCE_ON_THE_RIG, |row| {
+                row.on_the_rig.map(|[.., force]| force)
+            }),
+        ]);
+    }
+    columns
+}
+
+/// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
     let of_floors = shake::tables::columns(shake::tables::unloaded());
-    [numeric(MOVES), of_floors].concat()
+    [numeric(MOVES), of_floors, numeric(&elements(true))].concat()
+}
+
+/// The table of the elements of a frame of matrices, under this name.
+pub(crate) fn of_elements(
+    name: String,
+    steps: &[UnloadStep],
+    scaled: Option<Assemblies>,
+) -> Table<'_> {
+    Table::of(name, steps, move |steps| {
+        elements_written(steps, scaled.as_ref())
+    })
+}
+
+/// The columns of that table; step 0 is the start of the unloading.
+pub(crate) fn elements_written(
+    steps: &[UnloadStep],
+    scaled: Option<&Assemblies>,
+) -> Vec<WrittenColumn> {
+    let rows = steps.iter().flat_map(|step| {
+        let mut on_the_rig = vec![None; step.command.len()];
+        if let Some(assemblies) = scaled {
+            let read = [&*step.displacement, &*step.restoring_force];
+            let [displacement, force] = assemblies.axes_read(read, &step.elements());
+            let axes = assemblies
+                .axes_of_elements(step.command.clone())
+                .into_iter();
+            let axes = axes.zip(displacement).zip(force);
+            for (element, ((command, displacement), force)) in assemblies.tested().zip(axes) {
+                on_the_rig[element] = Some([command, displacement, force]);
+            }
+        }
+        let row = move |(element, on_the_rig)| ElementRow {
+            step,
+            element,
+            on_the_rig,
+        };
+        on_the_rig.into_iter().enumerate().map(row)
+    });
+    written(&elements(scaled.is_some()), &rows.collect::<Vec<_>>())
 }
 
 /// The table of the moves of one degree of freedom, under this name.

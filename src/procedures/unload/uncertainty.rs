@@ -37,7 +37,7 @@ impl UncertainRun<'_> {
             .all(Vec::is_empty);
         let instruments = self.instruments(errors.len());
         let floors = rest.force.len();
-        let forces = axes.forces_of(&rest.force);
+        let [_, forces] = at_the_axes(&axes, rest);
         let alone = |axis: usize, force: f64| -> Vec<f64> {
             let at = |floor: usize| axes.forces_at(floor).into_iter().filter(|at| at.0 == axis);
             let floors = 0..floors;
@@ -130,8 +130,7 @@ impl UncertainRun<'_> {
     /// The reading there is as uncertain as any other.
     fn read(&self, rest: &mut Rest, axes: &Assemblies, errors: &Errors) {
         let instruments = self.instruments(errors.len());
-        let displacements = axes.axes_of(&rest.displacement);
-        let forces = axes.forces_of(&rest.force);
+        let [displacements, forces] = at_the_axes(axes, rest);
         let of_position = |(axis, factor): (usize, f64)| {
             let calibration = self.whole.rig.calibration_of(axis);
             let [_, below] = instruments.below(axis);
@@ -171,7 +170,12 @@ impl UncertainRun<'_> {
     }
 }
 
-/// The effect of force errors \[N\] of a source at the floors on the position of zero force.
+/// Displacements \[m\] and forces \[N\] of the axes.
+fn at_the_axes(axes: &Assemblies, rest: &Rest) -> [Vec<f64>; 2] {
+    axes.axes_read([&rest.displacement, &rest.force], &rest.elements())
+}
+
+/// The effect of force errors \[N\] of a source at the floors or elements on the position of zero force.
 fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
     for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.moves(force)) {
         parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));

@@ -611,7 +611,8 @@ impl<'a> Checker<'a> {
         let of_axes = schema::procedures::tracking::OF_EACH_AXIS
             .iter()
             .any(|list| list.name == reference.name);
-        Some(if of_axes && !frame.elements.is_empty() {
+        let unloads = kind.kind == Kind::Procedure(ProcedureBlock::Unload);
+        Some(if (of_axes || unloads) && !frame.elements.is_empty() {
             frame.elements.len()
         } else {
             frame.degrees_of_freedom()

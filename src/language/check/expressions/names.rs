@@ -11,6 +11,7 @@ use crate::codes::{E203, E206, E304, E403, E641};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
+use psd_plan::procedures::unload::block as unload;
 use psd_plan::schema::study::PROBABILITY;
 use psd_plan::schema::{self, BlockKind, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
@@ -185,6 +186,17 @@ struct ResultOfAStorey<'a> {
     #[label("not a result here")]
     at: Span,
     #[label("strikes one degree of freedom")]
+    head: Span,
+}
+
+#[derive(Violation)]
+#[violation(E641, "`{result}` does not exist for the unloading of elements")]
+#[help("read `residual_drift`: the deformation of each element")]
+struct ResultOfFloors<'a> {
+    result: &'a str,
+    #[label("not a result here")]
+    at: Span,
+    #[label("unloads elements")]
     head: Span,
 }
 
@@ -577,6 +589,18 @@ impl<'a> Checker<'a> {
                 .diagnostic();
                 return self.fail(diagnostic);
             }
+            if unloads
+                && result.name == unload::FLOOR_DISPLACEMENT.name
+                && self.tests_elements(block)
+            {
+                let diagnostic = ResultOfFloors {
+                    result: result.name,
+                    at: name.span,
+                    head: declared.block.head,
+                }
+                .diagnostic();
+                return self.fail(diagnostic);
+            }
             let reference = ResultReference {
                 procedure,
                 name: result.name,
@@ -678,6 +702,12 @@ impl<'a> Checker<'a> {
     fn tests_a_frame(&mut self, block: usize) -> bool {
         self.tested(block)
             .is_some_and(|specimen| frame::is_frame(self, specimen))
+    }
+
+    fn tests_elements(&mut self, block: usize) -> bool {
+        self.tested(block)
+            .and_then(|specimen| frame::frame(self, specimen))
+            .is_some_and(|frame| !frame.elements.is_empty())
     }
 
     /// Checks that every result that a value reads may be read in this context.

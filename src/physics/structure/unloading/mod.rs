@@ -2,7 +2,8 @@
 //! unloaded position. It moves nothing.
 //!
 //! In a shear building each storey's shear is a function of its own storey drift, so that the system is uncoupled. Storey j is off by
-//! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame uses K⁻¹ of the initial stiffness throughout.
+//! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Elements, each with an axis of its own, are unloaded in the same way: displacements
+//! are then their deformations, and forces their own. Any other frame uses K⁻¹ of the initial stiffness throughout.
 
 mod line;
 mod path;
@@ -26,15 +27,17 @@ pub struct Unloading {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Slopes {
-    /// The stiffness of each storey \[N/m\]: expected, and as the last move showed it.
+    /// The stiffness of each storey or element \[N/m\]: expected, and as the last move showed it.
     Storeys {
         expected: Vec<f64>,
         shown: Vec<f64>,
+        /// Whether each stands on the one below.
+        stacked: bool,
     },
     Whole(BandFactor),
 }
 
-/// Positions \[m\] and restoring forces \[N\] of the floors.
+/// Positions \[m\] and restoring forces \[N\] of the floors; deformations and forces of elements.
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a> {
     pub displacement: &'a [f64],
@@ -57,6 +60,7 @@ impl Unloading {
             Some(expected) => Slopes::Storeys {
                 shown: expected.clone(),
                 expected,
+                stacked: true,
             },
             None => Slopes::Whole(factor),
         };
@@ -66,13 +70,19 @@ impl Unloading {
     /// One degree of freedom, with K > 0 \[N/m\].
     #[must_use]
     pub fn of_one(stiffness: f64) -> Self {
-        let expected = vec![stiffness];
+        Self::of_elements(vec![stiffness], stiffness)
+    }
+
+    /// Elements that are unloaded each on its own, with K > 0 of every element, and the largest of a tested one \[N/m\].
+    #[must_use]
+    pub fn of_elements(expected: Vec<f64>, stiffest: f64) -> Self {
         Self {
             slopes: Slopes::Storeys {
                 shown: expected.clone(),
                 expected,
+                stacked: false,
             },
-            stiffest: stiffness,
+            stiffest,
         }
     }
 
@@ -82,19 +92,13 @@ impl Unloading {
         self.stiffest * quantum
     }
 
-    /// The move of each floor \[m\] by which these forces \[N\] become zero.
+    /// The move of each floor or element \[m\] by which these forces \[N\] become zero.
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         match &self.slopes {
             Slopes::Storeys { shown, .. } => {
-                let mut moves = vec![0.0; force.len()];
-                shears(force, &mut moves);
-                let mut below = 0.0;
-                for (moves, stiffness) in moves.iter_mut().zip(shown) {
-                    below -= *moves / stiffness;
-                    *moves = below;
-                }
-                moves
+                let loads = self.loads(force).into_iter().zip(shown);
+                self.positions(loads.map(|(load, stiffness)| -load / stiffness))
             }
             Slopes::Whole(factor) => {
                 let mut moves: Vec<f64> = force.iter().map(|force| -force).collect();
@@ -104,7 +108,60 @@ impl Unloading {
         }
     }
 
-    /// The expected stiffness of each storey \[N/m\]; None for a frame that is not a shear building.
+    /// Whether each storey stands on the one below.
+    const fn is_stacked(&self) -> bool {
+        matches!(self.slopes, Slopes::Storeys { stacked: true, .. })
+    }
+
+    /// The load of each storey or element \[N\].
+    fn loads(&self, force: &[f64]) -> Vec<f64> {
+        let mut loads = force.to_vec();
+        if self.is_stacked() {
+            shears(force, &mut loads);
+        }
+        loads
+    }
+
+    /// The drift of each storey, or the deformation of each element \[m\].
+    fn drifts(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut drift = displacement.to_vec();
+        if self.is_stacked() {
+            drifts(displacement, &mut drift);
+        }
+        drift
+    }
+
+    /// The moves of the floors or elements \[m\], from those of the storeys or elements.
+    fn positions(&self, moves: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut below = 0.0;
+        let position = |moves: f64| {
+            if !self.is_stacked() {
+                return moves;
+            }
+            below += moves;
+            below
+        };
+        moves.map(position).collect()
+    }
+
+    /// Drift \[m\] and load \[N\] of each storey or element.
+    fn parts_at(&self, at: Loaded<'_>) -> Vec<(f64, f64)> {
+        let drifts = self.drifts(at.displacement).into_iter();
+        drifts.zip(self.loads(at.force)).collect()
+    }
+
+    /// Change of drift \[m\] and of load \[N\] of each storey or element.
+    fn between(&self, from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
+        let less = |to: &[f64], from: &[f64]| -> Vec<f64> {
+            to.iter().zip(from).map(|(to, from)| to - from).collect()
+        };
+        [
+            self.drifts(&less(to.displacement, from.displacement)),
+            self.loads(&less(to.force, from.force)),
+        ]
+    }
+
+    /// The expected stiffness of each storey or element \[N/m\]; None for a frame that is not a shear building.
     #[must_use]
     pub fn storeys(&self) -> Option<&[f64]> {
         match &self.slopes {
@@ -122,12 +179,9 @@ impl Unloading {
         noise: &dyn Fn(usize) -> (f64, f64),
         least: f64,
     ) -> Self {
-        let Slopes::Storeys { expected, shown } = &mut self.slopes else {
-            return self;
-        };
         let mut lines: Vec<Line> = Vec::new();
         for at in points {
-            let read = of_storeys(at);
+            let read = self.parts_at(at);
             if lines.is_empty() {
                 lines = read.into_iter().map(Line::new).collect();
             } else {
@@ -136,6 +190,12 @@ impl Unloading {
                 }
             }
         }
+        let Slopes::Storeys {
+            expected, shown, ..
+        } = &mut self.slopes
+        else {
+            return self;
+        };
         for (storey, line) in lines.iter().enumerate() {
             if let Some(slope) = line.slope(noise(storey), least) {
                 expected[storey] = slope.min(expected[storey]);
@@ -145,10 +205,10 @@ impl Unloading {
         self
     }
 
-    /// The secant of each storey \[N/m\] if a move changed its storey drift, and none if there are no storeys.
+    /// The secant of each storey or element \[N/m\] if a move changed its storey drift, and none if there are no storeys.
     #[must_use]
     pub fn secants(&self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
-        let [moved, changed] = between(from, to);
+        let [moved, changed] = self.between(from, to);
         let secant = |(moved, changed): (f64, f64)| {
             (moved != 0.0 && self.storeys().is_some()).then(|| changed / moved)
         };
@@ -164,8 +224,11 @@ impl Unloading {
         sure: &dyn Fn(usize, f64, f64) -> bool,
     ) {
         let secants = self.secants(from, to);
-        let [moved, _] = between(from, to);
-        let Slopes::Storeys { expected, shown } = &mut self.slopes else {
+        let [moved, _] = self.between(from, to);
+        let Slopes::Storeys {
+            expected, shown, ..
+        } = &mut self.slopes
+        else {
             return;
         };
         for (storey, ((shown, expected), secant)) in
@@ -176,25 +239,6 @@ impl Unloading {
             }
         }
     }
-}
-
-/// Change of storey drift \[m\] and of shear \[N\] of each storey.
-fn between(from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
-    let (mut moved, mut changed) = (vec![0.0; from.force.len()], vec![0.0; from.force.len()]);
-    let less = |to: &[f64], from: &[f64]| -> Vec<f64> {
-        to.iter().zip(from).map(|(to, from)| to - from).collect()
-    };
-    drifts(&less(to.displacement, from.displacement), &mut moved);
-    shears(&less(to.force, from.force), &mut changed);
-    [moved, changed]
-}
-
-/// Storey drift \[m\] and shear \[N\] of each storey.
-fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
-    let (mut drift, mut shear) = (vec![0.0; at.force.len()], vec![0.0; at.force.len()]);
-    drifts(at.displacement, &mut drift);
-    shears(at.force, &mut shear);
-    drift.into_iter().zip(shear).collect()
 }
 
 /// Peak absolute value.

@@ -10,9 +10,8 @@
 //! length over which the slope is known. A branch that then stiffens to the expected slope is loaded in the opposite direction by less
 //! than `LITTLE` of the load at the start.
 
-use super::super::shear_building::shears;
 use super::line::Line;
-use super::{BELIEVED, Loaded, Unloading, largest, of_storeys};
+use super::{BELIEVED, Loaded, Unloading, largest};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
 
@@ -31,14 +30,14 @@ const GROWTH: f64 = 0.25;
 /// Standard deviations of a load that are no load.
 const NOISE: f64 = 3.0;
 
-/// State of the unloading, storey by storey; of all floors as one for a frame that is not a shear building.
+/// State of the unloading, storey by storey or element by element; of all floors as one for a frame that is not a shear building.
 #[derive(Clone, Debug)]
 pub struct UnloadingPath {
     unloading: Unloading,
     parts: Vec<PathPart>,
 }
 
-/// A storey. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
+/// A storey or an element. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
 #[derive(Clone, Debug)]
 struct PathPart {
     /// \[N/m\]
@@ -79,9 +78,15 @@ impl UnloadingPath {
             Some(expected) => {
                 let floors = expected.len();
                 let of_storey = |(storey, (expected, read)): (usize, (&f64, (f64, f64)))| {
+                    let is_stacked = unloading.is_stacked();
                     #[expect(clippy::cast_precision_loss, reason = "some storeys")]
-                    let above = (floors - storey) as f64;
-                    let ends = if storey == 0 { 1.0 } else { 2.0_f64 };
+                    let above = if is_stacked {
+                        (floors - storey) as f64
+                    } else {
+                        1.0
+                    };
+                    let is_difference = is_stacked && storey > 0;
+                    let ends = if is_difference { 2.0_f64 } else { 1.0 };
                     part(
                         *expected,
                         read,
@@ -90,7 +95,7 @@ impl UnloadingPath {
                 };
                 expected
                     .iter()
-                    .zip(of_storeys(at))
+                    .zip(unloading.parts_at(at))
                     .enumerate()
                     .map(of_storey)
                     .collect()
@@ -116,14 +121,9 @@ impl UnloadingPath {
                 .map(|moves| share * moves)
                 .collect();
         }
-        let mut moves = vec![0.0; force.len()];
-        shears(force, &mut moves);
-        let mut below = 0.0;
-        for (moves, part) in moves.iter_mut().zip(&self.parts) {
-            below += part.moves(*moves);
-            *moves = below;
-        }
-        moves
+        let loads = self.unloading.loads(force).into_iter().zip(&self.parts);
+        let moves = loads.map(|(load, part)| part.moves(load));
+        self.unloading.positions(moves)
     }
 
     /// Largest load of a part \[N\]: it falls with every effective move.
@@ -165,9 +165,7 @@ impl UnloadingPath {
         if self.unloading.storeys().is_none() {
             return vec![largest(force)];
         }
-        let mut loads = vec![0.0; force.len()];
-        shears(force, &mut loads);
-        loads
+        self.unloading.loads(force)
     }
 
     /// Learns from a move between two positions. Returns the secant of each storey \[N/m\] with a change of storey drift, and none
@@ -179,7 +177,7 @@ impl UnloadingPath {
             let part = &mut self.parts[0];
             part.learn(part.line.last().0 + travel, after);
         } else {
-            for (part, (drift, shear)) in self.parts.iter_mut().zip(of_storeys(to)) {
+            for (part, (drift, shear)) in self.parts.iter_mut().zip(self.unloading.parts_at(to)) {
                 part.learn(drift, shear);
             }
         }

@@ -8,33 +8,33 @@ use psd_text::units::Dimension;
 pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
-    "unloaded position; of a frame, the largest of all floors",
+    "unloaded position; of a frame, the largest of all floors or elements",
 );
 
 pub const RESIDUAL_FORCE: ResultKind = ResultKind::measured(
     "residual_force",
     Dimension::FORCE,
-    "remaining force there; of a frame, the largest of a floor",
+    "remaining force there; of a frame, the largest of a floor or element",
 );
 
 pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "floor_displacement",
     Dimension::LENGTH,
-    "unloaded position of each floor",
+    "unloaded position of each floor; not of elements",
 )
 .of_storey();
 
 pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
     Dimension::LENGTH,
-    "drift of each unloaded storey",
+    "drift of each unloaded storey, or deformation of each element",
 )
 .of_storey();
 
 pub const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
     "residual_shear",
     Dimension::FORCE,
-    "remaining shear of each storey",
+    "remaining shear of each storey, or force of each element",
 )
 .of_storey();
 
@@ -50,7 +50,7 @@ pub const RESULTS: &[ResultKind] = &[
 pub const WITHIN: Field = Field::quantity(
     "within",
     Dimension::FORCE,
-    "largest force that counts as zero; of a frame, on a floor",
+    "largest force that counts as zero; of a frame, on a floor or element",
 )
 .above_zero()
 .default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
@@ -68,5 +68,5 @@ pub const BLOCK: BlockKind = BlockKind {
     exports: &[],
     results: RESULTS,
     example: "unload rest { }",
-    doc: "Move to zero restoring force; of a frame, all floors together",
+    doc: "Move to zero restoring force; of a frame, all floors or elements together",
 };

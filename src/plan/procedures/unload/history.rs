@@ -2,8 +2,10 @@
 
 use crate::record::history::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
+use psd_physics::structure::elements::ElementReading;
 
-/// All floors after one move, from the ground up; step 0 is the start of the unloading of a frame.
+/// All floors after one move, from the ground up, or the elements of a frame of matrices; step 0 is the start of the unloading of a frame.
+/// Of an element, displacements are deformations, and the force is its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnloadStep {
     pub step: u64,
@@ -13,10 +15,28 @@ pub struct UnloadStep {
     pub command: Vec<f64>,
     /// Measured \[m\].
     pub displacement: Vec<f64>,
-    /// Measured, of each floor \[N\].
+    /// Measured, of each floor or element \[N\].
     pub restoring_force: Vec<f64>,
-    /// Secant of each storey from the previous step \[N/m\]; None without a change of storey drift, or for a frame without storeys.
+    /// Secant of each storey or element from the previous step \[N/m\]; None without a change of storey drift, or for a frame without storeys.
     pub tangent_stiffness: Vec<Option<f64>>,
+}
+
+impl UnloadStep {
+    /// Its readings, if they are those of elements.
+    #[must_use]
+    pub fn elements(&self) -> Vec<ElementReading> {
+        element_readings(&self.command, &self.displacement, &self.restoring_force)
+    }
+}
+
+fn element_readings(target: &[f64], deformation: &[f64], force: &[f64]) -> Vec<ElementReading> {
+    let read = target.iter().zip(deformation).zip(force);
+    read.map(|((target, deformation), force)| ElementReading {
+        target: *target,
+        deformation: *deformation,
+        force: *force,
+    })
+    .collect()
 }
 
 /// Nothing is computed here: positions are measured, times are rig times, and no recursion contains a tracking error.
@@ -37,7 +57,7 @@ impl Floors for UnloadStep {
     }
 }
 
-/// The rest position of a specimen, floor by floor; one degree of freedom is one floor.
+/// The rest position of a specimen, floor by floor or element by element; one degree of freedom is one floor.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rest {
     /// Measured \[m\].
@@ -57,6 +77,12 @@ impl Rest {
     #[must_use]
     pub fn of(&self, floor: usize) -> (f64, f64) {
         (self.displacement[floor], self.force[floor])
+    }
+
+    /// Its readings, if they are those of elements.
+    #[must_use]
+    pub fn elements(&self) -> Vec<ElementReading> {
+        element_readings(&self.displacement, &self.displacement, &self.force)
     }
 
     /// Drift of each storey \[m\].
@@ -107,6 +133,12 @@ impl Rest {
     #[must_use]
     pub fn position_contributions(&self) -> Vec<Contribution> {
         entries(self.of_displacement.iter().cloned())
+    }
+
+    /// The uncertainty contributions of the remaining forces \[N\]: an entry per floor.
+    #[must_use]
+    pub fn force_contributions(&self) -> Vec<Contribution> {
+        entries(self.of_force.iter().cloned())
     }
 
     /// The uncertainty contributions of the storey drifts \[m\]: the contribution to a floor minus that to the floor below.

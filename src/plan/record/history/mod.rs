@@ -23,6 +23,8 @@ pub enum History {
     Unload(Vec<UnloadStep>),
     /// The floors of a frame during the unloading.
     FrameUnload(Vec<UnloadStep>),
+    /// Of the elements of a frame of matrices.
+    ElementUnload(Vec<UnloadStep>),
     /// Its readings are those of the axial axes.
     Preload,
     Inspect,
@@ -66,6 +68,7 @@ impl History {
             | Self::Move(_)
             | Self::Unload(_)
             | Self::FrameUnload(_)
+            | Self::ElementUnload(_)
             | Self::Preload
             | Self::Inspect => Vec::new(),
         };

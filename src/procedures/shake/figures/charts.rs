@@ -47,23 +47,12 @@ pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
 /// Storey shear against storey drift: the area of a loop is the absorbed energy. Elements of a frame of matrices: force against deformation.
 pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
     if has_elements(steps) {
-        let curves = each(steps, |step| {
+        return loops_of_elements(steps, |step| {
             let elements = step.elements().iter();
             elements
                 .map(|read| (read.deformation, read.force))
                 .collect()
         });
-        let curves = curves.into_iter().enumerate();
-        let curves = curves.map(|(curve, (element, points))| Series {
-            label: format!("element {}", element + 1),
-            points,
-            style: retraced(curve),
-        });
-        return Chart::of(
-            Quantity::along("Deformation", Dimension::LENGTH),
-            Quantity::of("Force", Dimension::FORCE),
-            curves.collect(),
-        );
     }
     let curves = each(steps, |step| {
         step.drift().into_iter().zip(step.shear()).collect()
@@ -79,6 +68,24 @@ pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
     Chart::of(
         Quantity::along("Drift", Dimension::LENGTH),
         Quantity::of("Storey shear", Dimension::FORCE),
+        curves.collect(),
+    )
+}
+
+/// Force against deformation of each element.
+pub(crate) fn loops_of_elements<S: Floors>(
+    steps: &[S],
+    read: impl Fn(&S) -> Vec<(f64, f64)>,
+) -> Chart {
+    let curves = each(steps, read).into_iter().enumerate();
+    let curves = curves.map(|(curve, (element, points))| Series {
+        label: format!("element {}", element + 1),
+        points,
+        style: retraced(curve),
+    });
+    Chart::of(
+        Quantity::along("Deformation", Dimension::LENGTH),
+        Quantity::of("Force", Dimension::FORCE),
         curves.collect(),
     )
 }

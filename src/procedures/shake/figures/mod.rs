@@ -110,6 +110,30 @@ pub(crate) fn unloading_chart(
     })
 }
 
+/// The same of the elements of a frame of matrices.
+pub(crate) fn unloaded_elements(
+    run: &Run<'_>,
+    name: &str,
+    steps: &[UnloadStep],
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
+        let force = measured("force of each element", run.plan.frame_on_the_rig());
+        let read = |step: &UnloadStep| {
+            let deformation = step.displacement.iter().copied();
+            deformation
+                .zip(step.restoring_force.iter().copied())
+                .collect()
+        };
+        (
+            charts::loops_of_elements(steps, read),
+            format!(
+                "{name}: {force} against its deformation, from the start of the unloading to zero force."
+            ),
+        )
+    })
+}
+
 /// The caption of the loops.
 pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
     let frame = run.plan.frame_on_the_rig();

@@ -175,12 +175,14 @@ fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Bloc
 
 /// The noun for one entry of the list of this name.
 pub(crate) fn entry_kind(result: &str, procedure: &ProcedureRecord) -> &'static str {
+    let entries = procedures::recorded(&procedure.history).entries;
     match result {
+        _ if entries == "element" => entries,
         name if name == impact::PERIODS.name => "mode",
         name if name.contains("drift") || name.starts_with("storey") => "storey",
         name if name == unload::RESIDUAL_SHEAR.name => "storey",
         name if name == impact::FLOOR_DISPLACEMENT.name => "floor",
-        _ => procedures::recorded(&procedure.history).entries,
+        _ => entries,
     }
 }
 

@@ -58,7 +58,9 @@ pub(super) fn measured(record: &Record) -> String {
                 steps.iter().map(|step| step.command).collect::<Vec<_>>()
             )
             .unwrap(),
-            History::Unload(steps) | History::FrameUnload(steps) => {
+            History::Unload(steps)
+            | History::FrameUnload(steps)
+            | History::ElementUnload(steps) => {
                 for step in steps {
                     writeln!(
                         text,

@@ -156,7 +156,21 @@ pub(super) fn shaken_elements(mode: Mode) -> Plan {
     let elements = frame.members().map(element).collect();
     let matrices = Frame::of_matrices(frame.mass.clone(), vec![vec![0.0; order]; order]);
     plan.specimens[0].frame = Some(matrices.with_elements(elements));
+    plan.procedures.push(rest());
     plan
+}
+
+/// The unloading of a frame.
+fn rest() -> Procedure {
+    Procedure {
+        name: "rest".to_owned(),
+        kind: ProcedureKind::Unload(Unload {
+            specimen: 0,
+            stiffness: None,
+            within: None,
+            speed: None,
+        }),
+    }
 }
 
 /// The lower storey under an axial load, of which `unload` takes the load off.
@@ -165,15 +179,7 @@ pub(super) fn shaken_under_a_load() -> Plan {
     let frame = plan.specimens[0].frame.as_ref().unwrap();
     let lower = |storeys: &mut [Storey]| storeys[0].height = Some(3.0);
     plan.specimens[0].frame = Some(frame.with(lower));
-    plan.procedures.push(Procedure {
-        name: "rest".to_owned(),
-        kind: ProcedureKind::Unload(Unload {
-            specimen: 0,
-            stiffness: None,
-            within: None,
-            speed: None,
-        }),
-    });
+    plan.procedures.push(rest());
     preloaded(&plan, 0, 1e5, 1.0)
 }
 

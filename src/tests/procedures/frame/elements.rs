@@ -2,20 +2,24 @@
 //! degrees of freedom move as an independent recursion.
 
 use super::hybrid::{
-    COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
+    APART, COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
     shaken, struck, twice,
 };
 use super::scaled::{SCALES, model_on_the_rig};
+use crate::procedures::unload::tables;
 use crate::tests::testing::run_unwatched;
 use crate::tests::uncertainty::frame::{entry, from};
 use psd_physics::structure::Damping;
 use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::shake::block::{FINAL_DRIFT, MAX_BASE_SHEAR};
-use psd_plan::record::{FloorMotion, History, Record};
+use psd_plan::procedures::unload::block::{RESIDUAL_DRIFT, RESIDUAL_SHEAR};
+use psd_plan::record::{FloorMotion, History, Outcome, Record, UnloadStep};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
-    Behaviour, Contact, Element, Frame, Integrator, Link, Mode, Part, Plan, Storey, VirtualLink,
+    Behaviour, Contact, Element, Frame, Integrator, Link, Mode, Part, Plan, ProcedureKind, Scale,
+    Storey, VirtualLink,
 };
 
 /// An element of this stiffness \[N/m\].
@@ -592,5 +596,209 @@ fn the_computed_matrix_is_uncertain() {
             (found.abs() - wanted.abs()).abs() < 0.02 * wanted.abs() && wanted != 0.0,
             "{found} for {wanted}"
         );
+    }
+}
+
+/// Their deformations and forces at the end of the unloading, and its steps.
+fn rests(record: &Record) -> ([Vec<f64>; 2], &[UnloadStep]) {
+    assert_eq!(record.outcome, Outcome::Completed);
+    let rest = &record.procedures[1];
+    let list = |name: &str| rest.result(name).unwrap().value.values().to_vec();
+    let History::ElementUnload(steps) = &rest.history else {
+        panic!("{:?}", rest.history)
+    };
+    (
+        [list(RESIDUAL_DRIFT.name), list(RESIDUAL_SHEAR.name)],
+        steps,
+    )
+}
+
+/// Shaken, unloaded and shaken again: storeys that are separate specimens, and the same storeys as elements.
+#[test]
+fn storeys_unload_as_their_elements() {
+    for parts in [
+        [TESTED, APART, APART],
+        [TESTED, APART, COMPUTED],
+        [COMPUTED, TESTED, APART],
+        [TESTED, COMPUTED, COMPUTED],
+        [COMPUTED, TESTED, COMPUTED],
+    ] {
+        let plan = twice(parts);
+        let storeys = run_unwatched(&plan);
+        let elements = run_unwatched(&as_elements(plan, no));
+        let ([found, left], _) = rests(&elements);
+        let wanted = storeys.procedures[1].result(RESIDUAL_DRIFT.name).unwrap();
+        let wanted = wanted.value.values();
+        assert_eq!((found.len(), wanted.len()), (3, 3));
+        for ((found, wanted), left) in found.iter().zip(wanted).zip(&left) {
+            assert!(
+                (found - wanted).abs() < 1e-11 && wanted.abs() > 1e-5 && left.abs() < 1e-6,
+                "{parts:?}: {found} for {wanted}, {left} N left"
+            );
+        }
+        same(&elements, &storeys, 2, 1e-8, &format!("{parts:?}"));
+    }
+}
+
+/// A bridge that is shaken, unloaded and shaken again.
+fn unloaded(parts: [Part; 4]) -> Plan {
+    let mut plan = bridge(parts, bilinear, Integrator::Explicit);
+    let procedures = twice([TESTED; 3]).procedures;
+    plan.procedures.extend(procedures.into_iter().skip(1));
+    let ProcedureKind::Unload(unload) = &mut plan.procedures[1].kind else {
+        panic!()
+    };
+    unload.within = None;
+    plan
+}
+
+/// Piers that yielded rest at their plastic deformation, whatever K and the other elements carry: the force falls along k from the
+/// last step of the test. The next test begins where the axes are.
+#[test]
+fn each_pier_rests_at_its_own_plastic_deformation() {
+    let parts = [TESTED, COMPUTED, TESTED, COMPUTED];
+    let plan = unloaded(parts);
+    let record = run_unwatched(&plan);
+    let ([deformation, left], steps) = rests(&record);
+    let end = floors(&record, 0).last().unwrap().elements.clone();
+    let begin = floors(&record, 2)[0].elements.clone();
+    for (element, part) in parts.into_iter().enumerate() {
+        let stiffness = frame(&plan).elements[element].stiffness;
+        let plastic = end[element].deformation - end[element].force / stiffness;
+        assert!((deformation[element] - plastic).abs() < 1e-9 && plastic.abs() > 1e-4);
+        assert!(left[element].abs() < 1e-3 && end[element].force.abs() > 10.0);
+        if part == TESTED {
+            assert!((begin[element].deformation - plastic).abs() < 1e-9);
+            assert!(begin[element].force.abs() < 1e-3);
+        } else {
+            let stays = |step: &UnloadStep| step.displacement[element] == deformation[element];
+            assert!(steps.iter().all(stays));
+        }
+    }
+    assert_eq!(steps.len(), 4, "the start and three moves");
+}
+
+/// With noise, every pier comes to rest within what its cell can show.
+#[test]
+fn noise_ends_the_unloading_of_elements_within_their_readings() {
+    let (noise, resolution) = (20.0, 1e-6);
+    for seed in 1..20 {
+        let mut plan = unloaded([TESTED, COMPUTED, TESTED, COMPUTED]);
+        plan.rig.link = Link::Virtual(VirtualLink {
+            noise,
+            resolution,
+            seed,
+            ..VirtualLink::default()
+        });
+        let record = run_unwatched(&plan);
+        let ([deformation, left], _) = rests(&record);
+        let end = floors(&record, 0).last().unwrap().elements.clone();
+        assert!(record.procedures[1].result(RESIDUAL_DRIFT.name).is_some());
+        for element in [0, 2] {
+            let stiffness = frame(&plan).elements[element].stiffness;
+            let plastic = end[element].deformation - end[element].force / stiffness;
+            let off = stiffness * (deformation[element] - plastic);
+            // Three standard deviations of the force are zero; the readings of start and end have noise too.
+            assert!(left[element].abs() <= 3.0 * noise && end[element].force.abs() > 10.0 * noise);
+            assert!(off.abs() < 8.0 * noise, "seed {seed}: {off} N");
+        }
+    }
+}
+
+/// The numbers of the rig are beside those of the prototype; none for a computed element. The specimen at a scale rests as at full scale.
+#[test]
+fn elements_at_a_scale_unload_as_at_full_scale() {
+    let plan = unloaded([TESTED, COMPUTED, TESTED, COMPUTED]);
+    let full = run_unwatched(&plan);
+    let ([wanted, _], _) = rests(&full);
+    for scale in SCALES {
+        let mut plan = plan.clone();
+        let mut elements = frame(&plan).elements.clone();
+        if let Part::Tested { scale: own, .. } = &mut elements[2].part {
+            *own = scale;
+        }
+        elements[2].behaviour = model_on_the_rig(&elements[2].behaviour, &scale);
+        plan.specimens[0].frame = Some(frame(&plan).clone().with_elements(elements));
+        let record = run_unwatched(&plan);
+        let ([found, _], steps) = rests(&record);
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!((found - wanted).abs() < 1e-10, "{found} for {wanted}");
+        }
+        let scaled = Assemblies::of(frame(&plan)).filter(Assemblies::is_scaled);
+        let written = tables::elements_written(steps, scaled.as_ref());
+        let read = |name: &str| {
+            let column = written.iter().find(|column| column.name() == name);
+            column.map(|column| column.f64().unwrap().to_vec())
+        };
+        let Some(rig) = read("displacement_rig_m") else {
+            assert!(scaled.is_none());
+            continue;
+        };
+        let [command, deformation, force, command_rig, force_rig] = [
+            "command_m",
+            "deformation_m",
+            "restoring_force_n",
+            "command_rig_m",
+            "force_rig_n",
+        ]
+        .map(|name| read(name).unwrap());
+        let near = |found: Option<f64>, wanted: f64| {
+            (found.unwrap() - wanted).abs() <= 1e-12 * wanted.abs()
+        };
+        for row in (0..rig.len()).step_by(4) {
+            for (element, scale) in [(0, Scale::FULL), (2, scale)] {
+                let of = |values: &[Option<f64>]| values[row + element].unwrap();
+                let row = row + element;
+                assert!(near(rig[row], scale.displacement * of(&deformation)));
+                assert!(near(command_rig[row], scale.displacement * of(&command)));
+                assert!(near(force_rig[row], of(&force) / scale.forces()));
+            }
+            assert_eq!((rig[row + 1], force_rig[row + 3]), (None, None));
+        }
+    }
+}
+
+/// The unloaded position of an element has the budget of the same storey: calibration, zero offset and readings of its axis.
+#[test]
+fn unloaded_elements_have_the_budget_of_storeys() {
+    let mut plan = twice([COMPUTED, TESTED, COMPUTED]);
+    plan.procedures.truncate(2);
+    plan.rig.calibration.force_uncertainty = 0.01;
+    plan.rig.calibration.displacement_uncertainty = 0.002;
+    plan.rig.calibration.zero_uncertainty = 50.0;
+    plan.rig.link = Link::Virtual(VirtualLink {
+        noise: 1.0,
+        resolution: 1e-7,
+        ..VirtualLink::default()
+    });
+    let ProcedureKind::Unload(unload) = &mut plan.procedures[1].kind else {
+        panic!()
+    };
+    unload.within = Some(Constant(5.0));
+    let mut storeys = run_unwatched(&plan);
+    let mut elements = run_unwatched(&as_elements(plan, no));
+    for record in [&mut storeys, &mut elements] {
+        record.procedures.remove(0);
+    }
+    for (result, sources) in [
+        (
+            RESIDUAL_DRIFT.name,
+            &[Source::DisplacementScale(0), Source::ForceZero(0)][..],
+        ),
+        (
+            RESIDUAL_SHEAR.name,
+            &[Source::ForceScale(0), Source::ForceZero(0)],
+        ),
+    ] {
+        let [(_, storey), (_, element)] =
+            [&storeys, &elements].map(|record| entry(record, result, 1));
+        assert_eq!(storey.len(), element.len());
+        for source in sources {
+            let (wanted, found) = (from(&storey, *source), from(&element, *source));
+            assert!(
+                (found - wanted).abs() <= 1e-6 * wanted.abs() && wanted != 0.0,
+                "{result}, {source:?}: {found} for {wanted}"
+            );
+        }
     }
 }

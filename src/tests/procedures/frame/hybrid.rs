@@ -14,7 +14,7 @@ use psd_plan::{
 };
 
 pub(crate) const TESTED: Part = Part::TESTED;
-const APART: Part = Part::Tested {
+pub(super) const APART: Part = Part::Tested {
     apart: true,
     scale: Scale::FULL,
 };
