@@ -164,6 +164,10 @@ fn numbers(
         format!("{displacement} {}", readable(highest, Dimension::LENGTH)),
         format!("{force} {}", readable(shown_force, Dimension::FORCE)),
     ];
+    let last = view.model.last.as_ref();
+    if let Some(force) = last.and_then(|last| last.axial_force) {
+        words.push(format!("axial force {}", readable(force, Dimension::FORCE)));
+    }
     if let Some(error) = view.model.tracking_error() {
         // A rounding error is not a tracking error.
         let error = if error.abs() < 1e-12 { 0.0 } else { error };
@@ -171,7 +175,6 @@ fn numbers(
     } else if view.model.open_loop {
         words.push("open loop".to_owned());
     }
-    let last = view.model.last.as_ref();
     if let Some(error) = last.and_then(|last| last.energy_error) {
         words.push(format!("{energy} {}", percent(error)));
     }

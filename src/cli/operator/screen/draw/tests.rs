@@ -134,6 +134,18 @@ fn numbers_of_a_specimen_at_a_scale_are_said_to_be_those_of_the_rig() {
     }
 }
 
+#[test]
+fn an_axial_force_is_beside_the_lateral_one() {
+    let mut loaded = model();
+    let last = loaded.last.clone().unwrap();
+    loaded.step_done(&StepReport {
+        axial_force: Some(262_500.0),
+        ..last
+    });
+    let text = picture((120, 40), &Dialogue::new(None), &loaded);
+    assert!(text.contains("R 80.16 N   axial force 262.5 kN"), "{text}");
+}
+
 /// The measured curves grow over the predicted ones, and the time left is beside the clock.
 #[test]
 fn a_run_with_a_prediction() {
