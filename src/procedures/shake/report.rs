@@ -246,6 +246,17 @@ pub(crate) fn storey_table<S: Floors>(
             title.to_owned()
         })
     };
+    // A frame of matrices with elements is no stack of storeys: its elements have a table.
+    if steps.last().is_some_and(|step| !step.elements().is_empty()) {
+        let row = |degree: usize| vec![(degree + 1).to_string().into(), cell(displacement, degree)];
+        return Block::Table(Table {
+            columns: vec![
+                Column::words("Degree of freedom", 1),
+                with_u("Peak displacement", displacement),
+            ],
+            rows: (0..shear.len()).map(row).collect(),
+        });
+    }
     let mut columns = vec![
         Column::words("Storey", 1),
         with_u("Peak floor displacement", displacement),

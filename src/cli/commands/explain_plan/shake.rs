@@ -1,6 +1,7 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
+use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::{Damping, widen};
 use psd_plan::record::{Floors, Modes, ShakeHistory};
@@ -164,9 +165,29 @@ pub fn steps(
     rows
 }
 
-/// The predicted peaks of all floors and storeys.
+/// The predicted peaks of all floors and storeys, or of all degrees of freedom and elements.
 pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
+    if steps.last().is_some_and(|step| !step.elements().is_empty()) {
+        let of = |read: fn(&ElementReading) -> f64, dimension| {
+            let read = move |step: &F| step.elements().iter().map(read).collect();
+            peaks(steps, read, dimension)
+        };
+        return vec![
+            row(
+                "largest displacement, row by row",
+                peaks(steps, |step| step.computed().to_vec(), Dimension::LENGTH),
+            ),
+            row(
+                "largest deformation, element by element",
+                of(|element| element.deformation, Dimension::LENGTH),
+            ),
+            row(
+                "largest force, element by element",
+                of(|element| element.force, Dimension::FORCE),
+            ),
+        ];
+    }
     vec![
         row(
             "largest displacement, floor by floor",
@@ -184,7 +205,7 @@ pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
 }
 
 /// Peak absolute values, all in one unit.
-fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
+fn peaks<S>(steps: &[S], read: impl Fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
     let mut largest: Vec<f64> = Vec::new();
     for step in steps {
         let values = read(step);
