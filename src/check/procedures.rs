@@ -5,6 +5,7 @@ use crate::procedures;
 use crate::procedures::facts::Tests;
 use psd_language::check::checker::Checker;
 use psd_language::check::rig::{CheckedRig, axes};
+use psd_language::check::wording::with_article;
 use psd_language::codes::E671;
 use psd_plan::schema::Kind;
 use psd_plan::schema::procedures::SPECIMEN;
@@ -187,11 +188,7 @@ fn nothing_tested(
         Some(rig) => checker.report(NothingOnTheRig {
             rig: &rig.plan.name,
             word,
-            one: if word == "storey" {
-                "a storey"
-            } else {
-                "an element"
-            },
+            one: &with_article(word),
             specimen: &specimen.name,
             declared,
         }),

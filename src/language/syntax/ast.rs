@@ -148,6 +148,15 @@ pub enum ExprKind {
 }
 
 impl Expr {
+    /// The position of an item of a list, from 0; of the whole expression where there is no such item.
+    pub fn item_span(&self, index: usize) -> Span {
+        let item = match &self.kind {
+            ExprKind::List { items, .. } => items.get(index),
+            _ => None,
+        };
+        item.map_or(self.span, |item| item.span)
+    }
+
     /// The operands of an operator, of a comparison or of parentheses; None for every other expression.
     pub fn operands(&self) -> Option<Vec<&Self>> {
         match &self.kind {

@@ -259,12 +259,7 @@ impl Frame {
         }
         Self {
             storeys,
-            elements: Vec::new(),
-            computed_stiffness: Vec::new(),
-            mass,
-            stiffness,
-            files: None,
-            matrix_uncertainty: [0.0; 2],
+            ..Self::of_matrices(mass, stiffness)
         }
     }
 

@@ -379,6 +379,22 @@ impl Assemblies {
         ]
     }
 
+    /// Command and measured displacement \[m\], and force \[N\] of the axis of every storey or element, from those of the axes; None for a
+    /// computed one.
+    #[must_use]
+    pub fn of_members(
+        &self,
+        command: Vec<f64>,
+        [displacement, force]: [Vec<f64>; 2],
+    ) -> Vec<Option<[f64; 3]>> {
+        let mut members = vec![None; self.supports.len()];
+        let axes = command.into_iter().zip(displacement).zip(force);
+        for (member, ((command, displacement), force)) in self.tested().zip(axes) {
+            members[member] = Some([command, displacement, force]);
+        }
+        members
+    }
+
     /// Stiffnesses of the storeys at the axes on the rig \[N/m\], from those of all storeys of the prototype.
     #[must_use]
     pub fn stiffnesses_of(&self, storeys: Vec<f64>) -> Vec<f64> {

@@ -247,7 +247,7 @@ pub(crate) fn storey_table<S: Floors>(
         })
     };
     // A frame of matrices with elements is no stack of storeys: its elements have a table.
-    if steps.last().is_some_and(|step| !step.elements().is_empty()) {
+    if steps.last().is_some_and(S::has_elements) {
         let row = |degree: usize| vec![(degree + 1).to_string().into(), cell(displacement, degree)];
         return Block::Table(Table {
             columns: vec![

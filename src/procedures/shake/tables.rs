@@ -37,18 +37,17 @@ fn rows<'a, F: Floors + 'a, S>(
     scaled: Option<&Assemblies>,
 ) -> Vec<FloorRow<'a, S>> {
     let storeys = |(floors, step): (&'a F, &'a S)| {
-        let mut on_the_rig = vec![None; floors.command().len()];
         // Elements have a table of their own.
-        if let Some(assemblies) = scaled.filter(|_| floors.elements().is_empty()) {
-            let axes = assemblies
-                .axes_of(floors.command())
-                .into_iter()
-                .zip(assemblies.axes_of(floors.measured()))
-                .zip(assemblies.forces_of(floors.restoring_force()));
-            for (storey, ((command, displacement), force)) in assemblies.tested().zip(axes) {
-                on_the_rig[storey] = Some([command, displacement, force]);
+        let on_the_rig = match scaled.filter(|_| !floors.has_elements()) {
+            Some(assemblies) => {
+                let read = [floors.measured(), floors.restoring_force()];
+                assemblies.of_members(
+                    assemblies.axes_of(floors.command()),
+                    assemblies.axes_read(read, &[]),
+                )
             }
-        }
+            None => vec![None; floors.command().len()],
+        };
         let shears = floors.net_shear().into_iter().zip(floors.shear());
         let storeys = floors.drift().into_iter().zip(shears).enumerate();
         storeys.map(move |(floor, (drift, (shear, spring_shear)))| FloorRow {
@@ -136,17 +135,29 @@ fn forces<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     ]
 }
 
-/// The axes, in numbers of the rig; empty for a computed storey.
-pub(crate) fn on_the_rig<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
+/// A row of a storey or an element.
+pub(crate) trait OnTheRig {
+    /// Command and measured displacement \[m\], and force \[N\] of its axis, in numbers of the rig; None for a computed one.
+    fn on_the_rig(&self) -> Option<[f64; 3]>;
+}
+
+impl<S> OnTheRig for FloorRow<'_, S> {
+    fn on_the_rig(&self) -> Option<[f64; 3]> {
+        self.on_the_rig
+    }
+}
+
+/// The axes, in numbers of the rig; empty for a computed storey or element.
+pub(crate) fn on_the_rig<R: OnTheRig>() -> Vec<TableColumn<R>> {
     vec![
-        Optional(columns::COMMAND_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[command, ..]| command)
+        Optional(columns::COMMAND_ON_THE_RIG, |row: &R| {
+            row.on_the_rig().map(|[command, ..]| command)
         }),
         Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[_, displacement, _]| displacement)
+            row.on_the_rig().map(|[_, displacement, _]| displacement)
         }),
         Optional(columns::FORCE_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[.., force]| force)
+            row.on_the_rig().map(|[.., force]| force)
         }),
     ]
 }
@@ -317,9 +328,15 @@ pub(crate) struct ElementRow<'a> {
     on_the_rig: Option<[f64; 3]>,
 }
 
+impl OnTheRig for ElementRow<'_> {
+    fn on_the_rig(&self) -> Option<[f64; 3]> {
+        self.on_the_rig
+    }
+}
+
 /// The columns of the elements.
 pub(crate) fn elements<'a>() -> Vec<TableColumn<ElementRow<'a>>> {
-    vec![
+    let columns = vec![
         Integer(columns::STEP, |row: &ElementRow<'a>| row.step),
         Integer(columns::ELEMENT, |row| row.element as u64 + 1),
         Number(columns::TIME, |row| row.floors.time),
@@ -338,16 +355,8 @@ pub(crate) fn elements<'a>() -> Vec<TableColumn<ElementRow<'a>>> {
         Number(columns::TRACKING_INDICATOR, |row| {
             row.floors.tracking[row.element].indicator
         }),
-        Optional(columns::COMMAND_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[command, ..]| command)
-        }),
-        Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[_, displacement, _]| displacement)
-        }),
-        Optional(columns::FORCE_ON_THE_RIG, |row| {
-            row.on_the_rig.map(|[.., force]| force)
-        }),
-    ]
+    ];
+    joined([columns, on_the_rig()])
 }
 
 /// The table of the elements of a frame of matrices; None without elements. `number` is the number of a step from its index.
@@ -363,14 +372,11 @@ pub(crate) fn of_elements<'a, S: Floors>(
         let mut rows = Vec::with_capacity(count * range.len());
         for index in range {
             let step = &steps[index];
-            let mut on_the_rig = vec![None; count];
             let read = [step.measured(), step.restoring_force()];
-            let [displacement, force] = assemblies.axes_read(read, step.elements());
-            let axes = assemblies.axes_of(step.command()).into_iter();
-            let axes = axes.zip(displacement).zip(force);
-            for (element, ((command, displacement), force)) in assemblies.tested().zip(axes) {
-                on_the_rig[element] = Some([command, displacement, force]);
-            }
+            let on_the_rig = assemblies.of_members(
+                assemblies.axes_of(step.command()),
+                assemblies.axes_read(read, step.elements()),
+            );
             let row = |(element, on_the_rig)| ElementRow {
                 step: number(index),
                 floors: step.at(),

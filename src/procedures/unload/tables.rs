@@ -25,6 +25,12 @@ struct ElementRow<'a> {
     on_the_rig: Option<[f64; 3]>,
 }
 
+impl shake::tables::OnTheRig for ElementRow<'_> {
+    fn on_the_rig(&self) -> Option<[f64; 3]> {
+        self.on_the_rig
+    }
+}
+
 /// The columns of the elements; those of the rig only if a specimen has a scale.
 fn elements<'a>(is_scaled: bool) -> Vec<TableColumn<ElementRow<'a>>> {
     let mut columns = vec![
@@ -43,17 +49,7 @@ fn elements<'a>(is_scaled: bool) -> Vec<TableColumn<ElementRow<'a>>> {
         }),
     ];
     if is_scaled {
-        columns.extend([
-            Optional(columns::COMMAND_ON_THE_RIG, |row: &ElementRow<'a>| {
-                row.on_the_rig.map(|[command, ..]| command)
-            }),
-            Optional(columns::DISPLACEMENT_ON_THE_RIG, |row| {
-                row.on_the_rig.map(|[_, displacement, _]| displacement)
-            }),
-            Optional(columns::FORCE_ON_THE_RIG, |row| {
-                row.on_the_rig.map(|[.., force]| force)
-            }),
-        ]);
+        columns.extend(shake::tables::on_the_rig());
     }
     columns
 }
@@ -81,18 +77,16 @@ pub(crate) fn elements_written(
     scaled: Option<&Assemblies>,
 ) -> Vec<WrittenColumn> {
     let rows = steps.iter().flat_map(|step| {
-        let mut on_the_rig = vec![None; step.command.len()];
-        if let Some(assemblies) = scaled {
-            let read = [&*step.displacement, &*step.restoring_force];
-            let [displacement, force] = assemblies.axes_read(read, &step.elements());
-            let axes = assemblies
-                .axes_of_elements(step.command.clone())
-                .into_iter();
-            let axes = axes.zip(displacement).zip(force);
-            for (element, ((command, displacement), force)) in assemblies.tested().zip(axes) {
-                on_the_rig[element] = Some([command, displacement, force]);
+        let on_the_rig = match scaled {
+            Some(assemblies) => {
+                let read = [&*step.displacement, &*step.restoring_force];
+                assemblies.of_members(
+                    assemblies.axes_of_elements(step.command.clone()),
+                    assemblies.axes_read(read, &step.elements()),
+                )
             }
-        }
+            None => vec![None; step.command.len()],
+        };
         let row = move |(element, on_the_rig)| ElementRow {
             step,
             element,

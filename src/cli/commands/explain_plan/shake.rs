@@ -168,7 +168,7 @@ pub fn steps(
 /// The predicted peaks of all floors and storeys, or of all degrees of freedom and elements.
 pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    if steps.last().is_some_and(|step| !step.elements().is_empty()) {
+    if steps.last().is_some_and(F::has_elements) {
         let of = |read: fn(&ElementReading) -> f64, dimension| {
             let read = move |step: &F| step.elements().iter().map(read).collect();
             peaks(steps, read, dimension)

@@ -314,11 +314,7 @@ pub fn context_of(checker: &Checker, block: usize, field: &str) -> Option<Contex
 /// The span of an axis in the list of a rig.
 pub fn item_of(checker: &Checker, block: usize, axis: usize) -> Option<Span> {
     let (_, written) = checker.field(block, schema::AXES.name)?;
-    let whole = written.value.span;
-    Some(match &written.value.kind {
-        ExprKind::List { items, .. } => items.get(axis).map_or(whole, |item| item.span),
-        _ => whole,
-    })
+    Some(written.value.item_span(axis))
 }
 
 fn virtual_link<'a>(

@@ -68,6 +68,11 @@ pub trait Floors {
         self.at().elements
     }
 
+    /// Whether it is a step of a frame of matrices with elements.
+    fn has_elements(&self) -> bool {
+        !self.elements().is_empty()
+    }
+
     /// The tracking error of each floor, or of each element.
     fn tracking(&self) -> &[Tracking] {
         self.at().tracking

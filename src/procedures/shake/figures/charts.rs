@@ -92,9 +92,7 @@ pub(crate) fn loops_of_elements<S: Floors>(
 
 /// Whether the steps are those of a frame of matrices with elements.
 fn has_elements<S: Floors>(steps: &[S]) -> bool {
-    steps
-        .first()
-        .is_some_and(|step| !step.elements().is_empty())
+    steps.first().is_some_and(S::has_elements)
 }
 
 pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
@@ -120,7 +118,7 @@ pub(crate) fn ground(history: &ShakeHistory) -> Chart {
 /// The tracking error of each floor, and the tracking indicator of all as a length: divided by the largest command.
 pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     let missed = |step: &S| {
-        if !step.elements().is_empty() {
+        if step.has_elements() {
             let elements = step.elements().iter();
             return elements
                 .map(|read| read.deformation - read.target)

@@ -4,7 +4,6 @@ use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::EmptyList;
 use crate::codes::{E405, E668, E671};
-use crate::syntax::ast::ExprKind;
 use psd_plan::schema::frames::{element, storey};
 use psd_plan::schema::specimen as fields;
 use psd_plan::{Element, Frame, MOST_STOREYS, Part};
@@ -91,10 +90,7 @@ pub fn with_elements(checker: &mut Checker, block: usize, frame: Frame) -> Optio
             span,
         });
     }
-    let at = |index: usize| match &written.value.kind {
-        ExprKind::List { items, .. } => items.get(index).map_or(span, |item| item.span),
-        _ => span,
-    };
+    let at = |index: usize| written.value.item_span(index);
     let order = frame.degrees_of_freedom();
     let elements: Vec<Option<Element>> = chosen
         .iter()

@@ -9,7 +9,7 @@ use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
 use crate::codes::{E405, E621, E622, E623, E668, E670};
 
-use crate::syntax::ast::{ExprKind, Ident};
+use crate::syntax::ast::Ident;
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
 use psd_plan::schema::specimen as fields;
@@ -226,10 +226,7 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
             span,
         });
     }
-    let at = |index: usize| match &written.value.kind {
-        ExprKind::List { items, .. } => items.get(index).map_or(span, |item| item.span),
-        _ => span,
-    };
+    let at = |index: usize| written.value.item_span(index);
     let storeys: Vec<Option<Storey>> = chosen
         .iter()
         .enumerate()
