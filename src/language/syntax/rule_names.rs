@@ -56,7 +56,7 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         | Rule::in_word
         | Rule::step_word
         | Rule::WHITESPACE
-        | Rule::comment
+        | Rule::to_line_end
         | Rule::gap
         | Rule::postfix
         | Rule::field

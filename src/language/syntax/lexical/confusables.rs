@@ -21,8 +21,8 @@ pub struct Normalized<'a> {
     pub spans: Vec<Span>,
 }
 
-/// Characters that look like one of the language, or have its meaning elsewhere. The longer ones come first.
-const SIGNS: &[(&str, &str)] = &[
+/// Operators of other languages. The longer ones come first.
+const FOREIGN_OPERATORS: &[(&str, &str)] = &[
     ("===", "=="),
     ("!==", "!="),
     ("...", ".."),
@@ -32,6 +32,10 @@ const SIGNS: &[(&str, &str)] = &[
     ("<>", "!="),
     ("**", "^"),
     (":=", "="),
+];
+
+/// Characters that look like one of the language, or have its meaning elsewhere.
+const SIGNS: &[(&str, &str)] = &[
     ("−", "-"),
     ("–", "-"),
     ("—", "-"),
@@ -164,7 +168,8 @@ impl<'a> Normalizer<'a> {
             return 1;
         };
         match first {
-            'a'..='z' | 'A'..='Z' | '0'..='9' | '_' | ' ' | '\n' | ',' => 1,
+            'a'..='z' | 'A'..='Z' | '0'..='9' => 1,
+            '_' | ' ' | '\n' | ',' | '(' | ')' | '[' | ']' | '{' | '}' | '%' | '+' | '^' => 1,
             '#' => line(rest).len(),
             // A string that is never closed has a separate error: the text after it contains no operators.
             '"' => text_extent(rest).unwrap_or_else(|| match self.quoted(rest, first) {
@@ -192,12 +197,19 @@ impl<'a> Normalizer<'a> {
             _ if QUOTES.iter().any(|(open, _)| *open == first) => self.quoted(rest, first),
             _ if SUPERSCRIPTS.iter().any(|(raised, _)| *raised == first) => self.superscript(rest),
             _ if letters::is_foreign(first) => self.word(),
-            _ => match SIGNS.iter().find(|(written, _)| rest.starts_with(written)) {
-                Some((written, meant)) => {
-                    self.replace(Confusable::Sign(written, meant), written.len(), meant)
+            _ => {
+                let signs = if first.is_ascii() {
+                    FOREIGN_OPERATORS
+                } else {
+                    SIGNS
+                };
+                match signs.iter().find(|(written, _)| rest.starts_with(written)) {
+                    Some((written, meant)) => {
+                        self.replace(Confusable::Sign(written, meant), written.len(), meant)
+                    }
+                    None => first.len_utf8(),
                 }
-                None => first.len_utf8(),
-            },
+            }
         }
     }
 
