@@ -121,6 +121,10 @@ fn of_result(metadata: &Metadata, result: &ResultAnswer) -> String {
     if let Some(deviation) = result.standard_deviation {
         let _ = write!(text, ", standard deviation {}", shown(deviation));
     }
+    if result.no_result > 0 {
+        let all = result.runs + result.no_result;
+        let _ = write!(text, ", of the {} of {all} runs that have it", result.runs);
+    }
     text.push('\n');
     for quantile in &result.quantiles {
         let [Some(low), Some(high)] = quantile.estimates else {

@@ -16,6 +16,7 @@ use psd_plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
 use psd_text::units::Dimension;
 pub use reproduction::ReproductionOutcome;
 pub use time_step::assess_condition;
+pub use undecided::unfinished;
 use undecided::{beyond, longer_than_critical, unless_undecided};
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.

@@ -64,6 +64,26 @@ pub(super) fn unless_undecided(
     }
 }
 
+/// Why a number that is made of these results is not that of a finished motion; None if it is.
+pub fn unfinished(references: &[ResultReference], record: &Record) -> Option<String> {
+    let procedure = |reference: &ResultReference| {
+        Some((
+            record.procedures.get(reference.procedure.0)?,
+            reference.name,
+        ))
+    };
+    let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
+    let growing = || {
+        read.iter().find_map(|(procedure, result)| {
+            unfinished_peaks::growing(&procedure.history, result, &procedure.name)
+        })
+    };
+    cut_short(&read)
+        .or_else(|| unbalanced(&read))
+        .or_else(|| above_critical(&read))
+        .or_else(growing)
+}
+
 /// A procedure that is not complete: its peaks may not have been reached.
 fn cut_short(read: &[Read<'_>]) -> Option<String> {
     let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;

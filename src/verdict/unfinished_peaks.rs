@@ -33,13 +33,22 @@ pub(super) fn undecided<'a>(
 ) -> Option<String> {
     hangs_on(condition, rule, results, |reference| {
         let (history, name) = history_of(reference.procedure)?;
-        match history {
-            History::Impact(history) => of_impact(history, reference.name, name),
-            History::Escalate(history) => of_row(history, reference.name, name),
-            History::Shake(history) => of_shake(history, reference.name, name),
-            _ => None,
-        }
+        growth(history, reference.name, name)
     })
+}
+
+/// Why this result of a procedure was still growing; None if it was not.
+pub(super) fn growing(history: &History, result: &str, name: &str) -> Option<String> {
+    growth(history, result, name).map(|growth| growth.why)
+}
+
+fn growth(history: &History, result: &str, name: &str) -> Option<Growth> {
+    match history {
+        History::Impact(history) => of_impact(history, result, name),
+        History::Escalate(history) => of_row(history, result, name),
+        History::Shake(history) => of_shake(history, result, name),
+        _ => None,
+    }
 }
 
 /// The same for a condition on the last impact of a series. It reads the results of that impact as those of the procedure `own`.

@@ -57,7 +57,8 @@ impl WorstRuns {
                 Some((row.results.get(limit.result)?.as_ref()? - limit.value).abs())
             });
             let (is_met, distance) = match (outcome, margin) {
-                (Outcome::NotMet, margin) => (false, -margin.unwrap_or(0.0)),
+                // Without a value its peak was not reached: it may be any worse.
+                (Outcome::NotMet, margin) => (false, -margin.unwrap_or(f64::INFINITY)),
                 (Outcome::Met, Some(margin)) => (true, margin),
                 (Outcome::Met, None) | (Outcome::NoResult, _) => continue,
             };

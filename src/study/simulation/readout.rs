@@ -241,11 +241,16 @@ impl Readout {
                     condition,
                 } => {
                     let outcome = &assessment.requirements[*requirement].conditions[*condition];
+                    let of_the_run = &self.requirements(plan)[*requirement].conditions[*condition];
                     let conclusive = outcome.verdict != Verdict::Inconclusive;
-                    outcome
-                        .value
-                        .filter(|_| conclusive)
-                        .ok_or_else(|| outcome.reason.clone())
+                    match outcome.value.filter(|_| conclusive) {
+                        None => Err(outcome.reason.clone()),
+                        // It violates a limit, whatever its peak is.
+                        Some(value) => match unfinished(&of_the_run.value, record) {
+                            Some(why) => Err(Some(why)),
+                            None => Ok(value),
+                        },
+                    }
                 }
                 From::Collected(index, formula) => {
                     let studies = plan.studies.studies.get(self.study_index);
@@ -332,18 +337,20 @@ fn of_result(plan: &Plan, reference: ResultReference) -> Option<Column> {
     (!kind.list).then(|| Column::new(&name, kind.dimension, kind.doc))
 }
 
-/// The value of a collected formula, if every procedure that it reads was completed.
+/// The value of a collected formula, if every result that it reads is that of a finished motion.
 fn evaluated(formula: &Formula, record: &Record) -> Result<f64, String> {
-    let mut references = Vec::new();
-    formula.collect_references(&mut references);
-    let procedures = references
-        .iter()
-        .filter_map(|reference| record.procedures.get(reference.procedure.0));
-    if let Some(stopped) = procedures.into_iter().find(|procedure| !procedure.complete) {
-        return Err(format!("{} was not completed", stopped.name));
+    if let Some(why) = unfinished(formula, record) {
+        return Err(why);
     }
     let value = formula.evaluate(record, None);
     value
         .map(|estimate| estimate.value)
         .map_err(|error| error.to_string())
+}
+
+/// Why a value is not that of a finished motion.
+fn unfinished(formula: &Formula, record: &Record) -> Option<String> {
+    let mut references = Vec::new();
+    formula.collect_references(&mut references);
+    verdict::unfinished(&references, record)
 }

@@ -324,6 +324,35 @@ fn rows_do_not_depend_on_the_number_of_threads() {
     assert_eq!(simulation.rows(150..160), one[150..160]);
 }
 
+/// An impact that ends in half of its way exceeds a limit already: the limit is decided, and no largest value is a peak.
+#[test]
+fn a_peak_that_was_not_reached_is_no_result_of_a_run() {
+    let text = plan("", "require \"short\" hit.max_displacement < 50 mm");
+    let short = text.replace("duration = 1 s", "duration = 0.15 s");
+    let mut studied = Studied::of(&short, 4);
+    studied.plan.studies.studies[0].collect = vec![Collected {
+        text: "-hit.max_displacement".to_owned(),
+        value: Formula::Negate(Box::new(Formula::Result(ResultReference {
+            procedure: ProcedureId(0),
+            name: psd_plan::procedures::impact::block::MAX_DISPLACEMENT.name,
+            part: ResultPart::Value,
+        }))),
+        dimension: Dimension::LENGTH,
+    }];
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    assert!(simulation.is_batched());
+    let batched = simulation.block(0..4);
+    let alone = Simulation::new(&studied.parsed, &studied.plan, &definition).one_by_one();
+    assert_eq!(bits(&batched), bits(&alone.block(0..4)));
+    for row in batched {
+        assert_eq!(row.outcomes, [Outcome::NotMet]);
+        assert_eq!(row.results, [None, None]);
+        let why = row.reason.unwrap_or_default();
+        assert!(why.contains("is not a peak"), "{why}");
+    }
+}
+
 /// An exceedance at one of three speeds, and a collected number.
 #[test]
 fn a_fragility_decides_its_condition_at_each_stripe() {

@@ -46,6 +46,9 @@ impl RareRuns {
         let result = row.results.get(self.limit.result).copied().flatten();
         let sign = if self.event.falls { -1.0 } else { 1.0 };
         let beyond = result.map(|result| sign * (result - self.limit.value));
+        // A limit is exceeded, and the peak was not reached: it fails by any distance.
+        let fails = outcome == Some(&Outcome::NotMet);
+        let beyond = beyond.or(fails.then_some(f64::MIN_POSITIVE));
         let known = outcome != Some(&Outcome::NoResult);
         self.progress.add(beyond.filter(|_| known));
     }
