@@ -2,7 +2,7 @@
 //! Out: the extent of a dry run on an ideal copy of the specimen, and its steps. It moves nothing.
 
 use super::pace::Part;
-use crate::commands::explain_plan::dry_rig::{Reach, Watched};
+use crate::commands::explain_plan::dry_rig::{Reach, Watched, whole};
 use psd::procedures::most_steps;
 use psd::run::Extent;
 use psd_plan::{Interval, Plan};
@@ -119,8 +119,8 @@ fn over(reaches: &[Reach]) -> Extent {
         })
     };
     Extent {
-        travel: widest(|reach| reach.displacement),
-        force: widest(|reach| reach.force),
+        travel: widest(|reach| whole(&reach.displacement)),
+        force: widest(|reach| whole(&reach.force)),
         speed: moved().map(|reach| reach.speed).reduce(f64::max),
         duration: reaches.last().map(|reach| reach.ended),
     }

@@ -23,8 +23,10 @@ pub struct Reach {
     pub steps: u64,
     /// Whether any target was sent.
     pub moved: bool,
-    pub displacement: Interval,
-    pub force: Interval,
+    /// Of each axis in displacement control.
+    pub displacement: Vec<Interval>,
+    /// Of the same axes.
+    pub force: Vec<Interval>,
     pub speed: f64,
     pub increment: f64,
     pub tracking_error: f64,
@@ -44,8 +46,8 @@ impl Reach {
             keyword: String::new(),
             steps: 0,
             moved: false,
-            displacement: EMPTY,
-            force: EMPTY,
+            displacement: Vec::new(),
+            force: Vec::new(),
             speed: 0.0,
             increment: 0.0,
             tracking_error: 0.0,
@@ -55,6 +57,14 @@ impl Reach {
             curves,
         }
     }
+}
+
+/// From the lowest to the highest of these; empty without any.
+pub fn whole(ranges: &[Interval]) -> Interval {
+    ranges.iter().fold(EMPTY, |whole, range| Interval {
+        low: whole.low.min(range.low),
+        high: whole.high.max(range.high),
+    })
 }
 
 /// The rig. It shares its data with the observer that receives the name of the running procedure.
@@ -70,15 +80,15 @@ pub struct Watched {
 }
 
 /// Sets the ends of ranges that are rounding errors of the largest range to 0.
-fn without_rounding(reaches: &mut [Reach], range: fn(&mut Reach) -> &mut Interval) {
-    let ends = |interval: Interval| [interval.low, interval.high];
+fn without_rounding(reaches: &mut [Reach], ranges: fn(&mut Reach) -> &mut Vec<Interval>) {
+    let ends = |interval: &Interval| [interval.low, interval.high];
     let all: Vec<f64> = reaches
         .iter_mut()
-        .flat_map(|reach| ends(*range(reach)))
+        .flat_map(|reach| ranges(reach).iter().flat_map(ends))
         .collect();
     let finite = all.into_iter().filter(|end| end.is_finite());
     let tiny = 1e-12 * finite.map(f64::abs).fold(0.0, f64::max);
-    for interval in reaches.iter_mut().map(range) {
+    for interval in reaches.iter_mut().flat_map(ranges) {
         for end in [&mut interval.low, &mut interval.high] {
             if end.abs() < tiny {
                 *end = 0.0;
@@ -130,7 +140,7 @@ impl Watched {
         self.target = targets.to_vec();
         self.note(|reach| {
             reach.moved = true;
-            reach.displacement = targets.iter().copied().fold(reach.displacement, widened);
+            widen(&mut reach.displacement, targets);
             reach.increment = reach.increment.max(increment);
             if increment > 0.0 {
                 reach.speed = reach.speed.max(speed.abs());
@@ -140,9 +150,9 @@ impl Watched {
 
     fn note_reading(&self, reading: &Reading, at_rest: bool) {
         self.note(|reach| {
-            reach.force = reading.force.iter().copied().fold(reach.force, widened);
-            let displaced = reading.displacement.iter().copied().take(self.displaced);
-            reach.displacement = displaced.fold(reach.displacement, widened);
+            let displaced = self.displaced.min(reading.force.len());
+            widen(&mut reach.force, &reading.force[..displaced]);
+            widen(&mut reach.displacement, &reading.displacement[..displaced]);
             if at_rest && reach.moved {
                 let errors = reading
                     .displacement
@@ -161,10 +171,12 @@ const EMPTY: Interval = Interval {
     high: f64::NEG_INFINITY,
 };
 
-fn widened(interval: Interval, value: f64) -> Interval {
-    Interval {
-        low: interval.low.min(value),
-        high: interval.high.max(value),
+/// Widens the range of each axis to its value.
+fn widen(ranges: &mut Vec<Interval>, values: &[f64]) {
+    ranges.resize(values.len(), EMPTY);
+    for (range, value) in ranges.iter_mut().zip(values) {
+        range.low = range.low.min(*value);
+        range.high = range.high.max(*value);
     }
 }
 

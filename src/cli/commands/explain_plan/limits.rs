@@ -2,11 +2,11 @@
 
 use super::DryRun;
 use super::cells::{distance, margin, row, span};
-use super::dry_rig::Reach;
+use super::dry_rig::{Reach, whole};
 use psd::report::PredictedLimit;
 use psd_plan::formula::ResultValue;
 use psd_plan::schema::limits;
-use psd_plan::{Interval, Limits};
+use psd_plan::{Interval, Limits, of_axis};
 use psd_text::units::Dimension;
 use psd_text::units::display::si_unit;
 
@@ -14,6 +14,8 @@ use psd_text::units::display::si_unit;
 struct LimitRange {
     /// Name of the field.
     name: &'static str,
+    /// The axis (from 1) that comes nearest to its own limit.
+    axis: Option<usize>,
     allowed: Interval,
     dimension: Dimension,
     /// None if nothing moved.
@@ -21,15 +23,9 @@ struct LimitRange {
 }
 
 impl DryRun<'_> {
-    /// Every limit with the range of the dry run.
+    /// Every limit with the range of the dry run. If axes have limits of their own, displacement and force are those of the axis that comes
+    /// nearest to its limit.
     fn reached(&self, limits: &Limits) -> [LimitRange; 8] {
-        let range = |pick: fn(&Reach) -> Interval| {
-            let moved = self.reaches.iter().filter(|reach| reach.moved).map(pick);
-            moved.reduce(|a, b| Interval {
-                low: a.low.min(b.low),
-                high: a.high.max(b.high),
-            })
-        };
         let absolute = |pick: fn(&Reach) -> f64| {
             let largest = self
                 .reaches
@@ -41,8 +37,18 @@ impl DryRun<'_> {
         };
         limits.named().map(|(name, allowed, dimension)| {
             let reached = match name {
-                _ if name == limits::DISPLACEMENT.name => range(|reach| reach.displacement),
-                _ if name == limits::FORCE.name => range(|reach| reach.force),
+                _ if name == limits::DISPLACEMENT.name => {
+                    let reach: fn(&Reach) -> &[Interval] = |reach| &reach.displacement;
+                    return self.nearest((name, dimension), limits, |of| of.displacement, reach);
+                }
+                _ if name == limits::FORCE.name => {
+                    return self.nearest(
+                        (name, dimension),
+                        limits,
+                        |of| of.force,
+                        |reach| &reach.force,
+                    );
+                }
                 _ if name == limits::SPEED.name => absolute(|reach| reach.speed),
                 _ if name == limits::INCREMENT.name => absolute(|reach| reach.increment),
                 _ if name == limits::TRACKING_ERROR.name => absolute(|reach| reach.tracking_error),
@@ -51,11 +57,54 @@ impl DryRun<'_> {
             };
             LimitRange {
                 name,
+                axis: None,
                 allowed,
                 dimension,
                 reached,
             }
         })
+    }
+
+    /// A limit of which axes may have their own: that of the axis with the smallest margin; of all axes where none has.
+    fn nearest(
+        &self,
+        (name, dimension): (&'static str, Dimension),
+        limits: &Limits,
+        of: fn(&Limits) -> Interval,
+        ranges: fn(&Reach) -> &[Interval],
+    ) -> LimitRange {
+        let moved = self.reaches.iter().filter(|reach| reach.moved);
+        let moved: Vec<&[Interval]> = moved.map(ranges).collect();
+        let reached = |axis: usize| {
+            let of_axis = moved.iter().filter_map(|ranges| ranges.get(axis));
+            let of_axis: Vec<Interval> = of_axis.copied().collect();
+            (!of_axis.is_empty()).then(|| whole(&of_axis))
+        };
+        let all = of(limits);
+        let axes = self.plan.degrees_of_freedom();
+        let own = |axis| of(&self.plan.rig.limits_of(axis, limits));
+        if (0..axes).all(|axis| own(axis) == all) {
+            let reached: Vec<Interval> = (0..axes).filter_map(reached).collect();
+            return LimitRange {
+                name,
+                axis: None,
+                allowed: all,
+                dimension,
+                reached: (!reached.is_empty()).then(|| whole(&reached)),
+            };
+        }
+        let margin = |axis: usize| {
+            reached(axis).map_or(f64::INFINITY, |reached| distance(name, own(axis), reached))
+        };
+        let nearest = (0..axes).min_by(|a, b| margin(*a).total_cmp(&margin(*b)));
+        let axis = nearest.unwrap_or(0);
+        LimitRange {
+            name,
+            axis: Some(axis + 1),
+            allowed: own(axis),
+            dimension,
+            reached: reached(axis),
+        }
     }
 
     /// The limits as the guard will apply them, as data.
@@ -88,6 +137,7 @@ impl DryRun<'_> {
         for limit in self.reached(&self.plan.limits) {
             let LimitRange {
                 name,
+                axis,
                 allowed,
                 dimension,
                 reached,
@@ -103,7 +153,7 @@ impl DryRun<'_> {
                     |reached| margin(&name, allowed, reached, dimension),
                 );
                 rows.push(vec![
-                    name,
+                    name + &of_axis(axis),
                     span(allowed, dimension),
                     reached.map_or_else(|| "–".to_owned(), |reached| span(reached, dimension)),
                     margin,

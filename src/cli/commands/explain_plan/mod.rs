@@ -15,7 +15,7 @@ pub(crate) mod zero_drift;
 
 use std::fmt::Write as _;
 
-use super::explain_plan::dry_rig::{Reach, Watched};
+use super::explain_plan::dry_rig::{Reach, Watched, whole};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use cells::{row, span};
@@ -362,8 +362,8 @@ impl<'a> DryRun<'a> {
             let mut cells = vec![reach.name.clone(), reach.keyword.clone()];
             if reach.moved {
                 cells.extend([
-                    span(reach.displacement, Dimension::LENGTH),
-                    span(reach.force, Dimension::FORCE),
+                    span(whole(&reach.displacement), Dimension::LENGTH),
+                    span(whole(&reach.force), Dimension::FORCE),
                     readable(reach.speed, Dimension::VELOCITY),
                     readable(reach.increment, Dimension::LENGTH),
                 ]);
@@ -398,8 +398,8 @@ impl<'a> DryRun<'a> {
             kind: reach.keyword.clone(),
             steps: reach.steps,
             rig_time_s: reach.ended - reach.started,
-            displacement_m: reach.moved.then(|| ends(reach.displacement)),
-            force_n: (reach.moved && reach.force.low.is_finite()).then(|| ends(reach.force)),
+            displacement_m: reach.moved.then(|| ends(whole(&reach.displacement))),
+            force_n: (reach.moved && !reach.force.is_empty()).then(|| ends(whole(&reach.force))),
             speed_m_per_s: reach.moved.then_some(reach.speed),
             increment_m: reach.moved.then_some(reach.increment),
         });
