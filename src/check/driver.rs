@@ -2,6 +2,7 @@
 //! data files. Out: the plan, or diagnostics with the reasons why it is missing. It does not depend on any particular procedure.
 
 use crate::procedures as slices;
+use crate::procedures::facts::Left;
 use psd_language::check::checker::Checker;
 use psd_language::check::declared::Declared;
 use psd_language::check::{declarations, rig, warnings as of_the_language};
@@ -215,7 +216,11 @@ pub fn plan(
                 requirements,
                 reproductions,
             };
-            warnings::whole_plan(checker, &procedures, stated, &grounds, head);
+            let left = Left {
+                grounds: &grounds,
+                specimens: &specimens,
+            };
+            warnings::whole_plan(checker, &procedures, stated, left, head);
         }
     }
     let rig_block = rig.as_ref().and_then(|rig| rig.block);

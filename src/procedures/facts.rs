@@ -3,7 +3,9 @@
 
 use super::unload;
 use psd_plan::record::BroughtTogether;
-use psd_plan::{Condition, Contact, Dependence, FigureKind, ShakeDamping, Stepping};
+use psd_plan::{
+    Condition, Contact, Dependence, FigureKind, Ground, ShakeDamping, Specimen, Stepping,
+};
 
 /// The structure that a procedure tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,6 +86,15 @@ pub(crate) enum Leaves<'a> {
     AtRest,
     /// Under load or in motion.
     Moving(Motion<'a>),
+    /// Unloaded, where the rest of the structure is not in balance: the end in words, and the help for the next one.
+    Unbalanced { ends: &'a str, help: &'a str },
+}
+
+/// What the state at the end of a procedure depends on besides the procedure.
+#[derive(Clone, Copy)]
+pub(crate) struct Left<'a> {
+    pub grounds: &'a [Option<Ground>],
+    pub specimens: &'a [Option<Specimen>],
 }
 
 /// A motion that begins at the end of the one before it.

@@ -26,7 +26,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use common::calibrated_range;
 use common::fit_uncertainty::Fits;
-use facts::{Delay, Facts, Leaves, Recorded, Tests};
+use facts::{Delay, Facts, Leaves, Left, Recorded, Tests};
 use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
@@ -40,8 +40,7 @@ use psd_plan::record::{
 use psd_plan::schema::{Column, Kind};
 use psd_plan::uncertainty::{InstrumentUncertainty, Source};
 use psd_plan::{
-    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
-    ProcedureKind,
+    DeclaredNoise, Figure, FigureKind, Impact, Plan, Procedure, ProcedureBlock, ProcedureKind,
 };
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
@@ -122,16 +121,16 @@ pub(crate) fn stays_positive(kind: &ProcedureKind) -> bool {
 }
 
 /// Check: the state in which a procedure leaves the specimen.
-pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves<'static> {
+pub(crate) fn leaves(kind: &ProcedureKind, left: Left<'_>) -> Leaves<'static> {
     match kind {
         ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
-        ProcedureKind::Shake(shake) => Leaves::Moving(shake::left::left(shake, grounds)),
+        ProcedureKind::Shake(shake) => Leaves::Moving(shake::left::left(shake, left.grounds)),
+        ProcedureKind::Unload(unload) => unload::facts::leaves(unload, left.specimens),
         ProcedureKind::Escalate(series) => Leaves::Moving(escalate::declared::motion(series)),
         ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
-        | ProcedureKind::Unload(_)
         | ProcedureKind::Move(_) => Leaves::AtRest,
     }
 }

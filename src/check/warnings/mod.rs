@@ -7,13 +7,13 @@ pub(crate) mod recorded_steps;
 pub mod tracking;
 
 use crate::codes::{W702, W704, W705, W706, W714, W720};
-use crate::procedures::facts::{Leaves, Motion};
+use crate::procedures::facts::{Leaves, Left, Motion};
 use psd_language::check::checker::Checker;
 use psd_plan::procedures::escalate::block::WHILE;
 use psd_plan::schema::specimen::MASS_UNCERTAINTY;
 use psd_plan::schema::{Kind, reproduces};
 use psd_plan::uncertainty::Source;
-use psd_plan::{Condition, Contact, Ground, Procedure, Reproduction, Requirement};
+use psd_plan::{Condition, Contact, Procedure, Reproduction, Requirement};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{FileId, Span, Spanned};
 
@@ -57,11 +57,11 @@ pub fn whole_plan(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     stated: Stated<'_>,
-    grounds: &[Option<Ground>],
+    left: Left<'_>,
     plan: Span,
 ) {
     peak_forces(checker, procedures, stated);
-    impacts_on_moving_specimens(checker, procedures, grounds);
+    impacts_on_moving_specimens(checker, procedures, left);
     unused_uncertainties(checker, procedures, stated.requirements);
     match procedures.last() {
         None => checker.report(NothingRuns { span: plan }),
@@ -129,7 +129,7 @@ impl Violation for ImpactOnMovingSpecimen<'_> {
                 what.node, before.node
             ),
         )
-        .at(what.span, "ends under load")
+        .at(what.span, "begins under load")
         .at(before.span, ends.to_owned())
         .help(help)
     }
@@ -140,12 +140,12 @@ impl Violation for ImpactOnMovingSpecimen<'_> {
 fn impacts_on_moving_specimens(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
-    grounds: &[Option<Ground>],
+    left: Left<'_>,
 ) {
     let mut before: Option<(usize, &str, &str)> = None;
     for (block, procedure) in procedures {
         let left = procedure.as_ref().map_or(Leaves::AtRest, |procedure| {
-            crate::procedures::leaves(&procedure.kind, grounds)
+            crate::procedures::leaves(&procedure.kind, left)
         });
         let Motion {
             what,
@@ -155,6 +155,10 @@ fn impacts_on_moving_specimens(
         } = match left {
             Leaves::Moving(motion) => motion,
             Leaves::AsFound => continue,
+            Leaves::Unbalanced { ends, help } => {
+                before = Some((*block, ends, help));
+                continue;
+            }
             Leaves::AtRest => {
                 before = None;
                 continue;

@@ -369,6 +369,14 @@ impl Frame {
         self.storeys.iter().any(|storey| storey.axial_load != 0.0)
     }
 
+    /// Whether some of the P-Δ is computed: that of an axial load on the rig is in its reading.
+    #[must_use]
+    pub fn computes_p_delta(&self) -> bool {
+        let loads = self.axial_loads();
+        let mut storeys = loads.iter().zip(&self.storeys);
+        storeys.any(|(load, storey)| (load - storey.axial_load).abs() > 1e-9 * load.abs())
+    }
+
     /// P/h of each storey \[N/m\]: its shear by P-Δ per drift, against its restoring force; empty without P.
     #[must_use]
     pub fn gravity_stiffness(&self) -> Vec<f64> {

@@ -5,6 +5,7 @@ use crate::codes::E678;
 use psd_language::check::checker::Checker;
 use psd_language::check::rig::CheckedRig;
 use psd_plan::procedures::preload::block as schema;
+use psd_plan::procedures::unload::block::KEEP_AXIAL_LOAD;
 use psd_plan::schema::rig as rig_schema;
 use psd_plan::{AxialAxis, Frame, Limits, Preload, Procedure, ProcedureKind, Specimen};
 use psd_text::diagnostic::Violation;
@@ -51,6 +52,14 @@ struct NoPreload {
     storey: usize,
     #[label("not used")]
     axes: Span,
+}
+
+#[derive(Violation)]
+#[violation(E678, "no axial axis of the rig holds a load")]
+#[help("remove `keep_axial_load`")]
+struct NoLoadToKeep {
+    #[label("nothing to keep")]
+    span: Span,
 }
 
 #[derive(Violation)]
@@ -139,10 +148,14 @@ pub(crate) fn check_axial_loads(
                         help: "move the `preload` above it",
                     });
                 }
-                if let ProcedureKind::Unload(_) = kind
-                    && !axes.is_empty()
-                {
-                    return check_after_unloading(checker, procedures, *block, &axes);
+                if let ProcedureKind::Unload(unload) = kind {
+                    if axes.is_empty() && unload.keep_axial_load {
+                        let span = checker.value_or_head(*block, KEEP_AXIAL_LOAD.name);
+                        return checker.report(NoLoadToKeep { span });
+                    }
+                    if !axes.is_empty() && !unload.keep_axial_load {
+                        return check_after_unloading(checker, procedures, *block, &axes);
+                    }
                 }
             }
         }
@@ -176,17 +189,19 @@ fn check_after_unloading(
                 storey: axes[0].storey + 1,
                 when: "after `unload` took its axial load off",
                 span,
-                help: "write one `unload`, as the last procedure that moves",
+                help: "end the plan with this `unload`, and write `keep_axial_load = true` in every one before it",
             });
         }
     }
 }
 
-/// Enters the axial load in its storey. The ratio of P-Δ and initial stiffness, if the storey is unstable at rest.
+/// Enters the axial load in its storey. The ratio of P-Δ and initial stiffness, if the storey is unstable at rest: under its weights, or
+/// under the axial load alone.
 fn enter(frame: &mut Frame, axis: &AxialAxis, force: f64) -> Option<f64> {
     let storey = frame.storeys.get_mut(axis.storey)?;
     storey.axial_load = axis.p_delta * force * storey.part.scale().forces();
-    let stiffness = storey.stiffness;
-    let ratio = frame.gravity_stiffness().get(axis.storey)? / stiffness;
+    let (stiffness, on_the_rig) = (storey.stiffness, storey.axial_stiffness());
+    let of_weights = *frame.gravity_stiffness().get(axis.storey)?;
+    let ratio = of_weights.max(on_the_rig) / stiffness;
     (ratio >= 1.0).then_some(ratio)
 }

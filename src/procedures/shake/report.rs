@@ -154,15 +154,10 @@ pub(crate) fn integrated(
 
 /// Where the P-Δ of the storeys comes from: the weights in the computer, or the axial load of the rig in its reading.
 fn p_delta(frame: &Frame) -> &'static str {
-    let loads = frame.axial_loads();
-    let is_computed = loads
-        .iter()
-        .zip(&frame.storeys)
-        .any(|(load, storey)| (load - storey.axial_load).abs() > 1e-9 * load.abs());
-    match (frame.has_axial_load(), is_computed) {
-        _ if loads.is_empty() => "",
-        (false, _) => {
-            " P-Δ was computed from the weights of the floors: the specimen carried no axial load. Base shear is net of P-Δ."
+    match (frame.has_axial_load(), frame.computes_p_delta()) {
+        (false, false) => "",
+        (false, true) => {
+            " P-Δ was computed from the weights of the floors; none was in the reading of the rig. Base shear is net of P-Δ."
         }
         (true, false) => {
             " P-Δ was in the reading of the rig, by the axial load on the specimen; none was computed. Base shear is net of P-Δ."

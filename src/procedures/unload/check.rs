@@ -34,10 +34,14 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             help,
         });
     }
+    let keep_axial_load = checker
+        .word(block, schema::KEEP_AXIAL_LOAD.name, "false")
+        .map(|word| word == "true");
     Some(ProcedureKind::Unload(Unload {
         specimen: specimen?,
         stiffness: stiffness?,
         within: within?,
         speed: speed?,
+        keep_axial_load: keep_axial_load?,
     }))
 }

@@ -1,10 +1,10 @@
 //! The facts about an unloading that the drivers of check and report need without carrying it out. In: an unloading of the plan.
 //! Out: facts.
 
-use crate::procedures::facts::{Facts, Recorded, Tests};
+use crate::procedures::facts::{Facts, Leaves, Recorded, Tests};
 use crate::procedures::shake::figures;
-use psd_plan::Unload;
 use psd_plan::procedures::unload::block as schema;
+use psd_plan::{Specimen, Unload};
 
 pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     let shared = Facts {
@@ -20,6 +20,26 @@ pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
         figures: figures::UNLOADING_FIGURES,
         headline: vec![schema::RESIDUAL_DRIFT.name],
         ..shared
+    }
+}
+
+/// The tested elements of a matrix frame have no force where K and the computed elements may have some, and the springs of storeys have none
+/// where P-Δ has.
+pub(crate) fn leaves(unload: &Unload, specimens: &[Option<Specimen>]) -> Leaves<'static> {
+    let specimen = specimens.get(unload.specimen).and_then(Option::as_ref);
+    let frame = specimen.and_then(|specimen| specimen.frame.as_ref());
+    let ends = match frame {
+        Some(frame) if !frame.elements.is_empty() => {
+            "unloads the tested elements alone: the computed structure is not in balance with them"
+        }
+        Some(frame) if frame.computes_p_delta() => {
+            "unloads the storeys: P-Δ remains where they have a residual drift"
+        }
+        _ => return Leaves::AtRest,
+    };
+    Leaves::Unbalanced {
+        ends,
+        help: "let the frame come to rest instead of the unloading: a longer `duration`, with a `damping_ratio`",
     }
 }
 

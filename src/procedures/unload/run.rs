@@ -173,7 +173,7 @@ fn unload(
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
     let uncertain = UncertainRun::new(whole, inputs, session.guard.declared_noise());
-    if session.guard.axial_loads().next().is_none() {
+    if plan.keep_axial_load || session.guard.axial_loads().next().is_none() {
         uncertain.unloaded(&mut rest, &unloading, steps);
         return Ok(rest);
     }

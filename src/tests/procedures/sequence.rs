@@ -31,6 +31,7 @@ fn unload() -> ProcedureKind {
         stiffness: Some(Constant(2e4)),
         within: None,
         speed: None,
+        keep_axial_load: false,
     })
 }
 

@@ -53,6 +53,7 @@ fn unloaded(
         stiffness: Some(Constant(stiffness)),
         within: None,
         speed: None,
+        keep_axial_load: false,
     });
     let mut plan = elastic_plan(1.0, vec![away, unload]);
     plan.specimens[0].behaviour = Some(behaviour.clone());

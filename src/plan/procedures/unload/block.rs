@@ -1,6 +1,7 @@
 //! `unload`: its block and results.
 
 use crate::ProcedureBlock;
+use crate::schema::methods::TRUTH;
 use crate::schema::procedures::{SPECIMEN, SPEED, STIFFNESS};
 use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
 use psd_text::units::Dimension;
@@ -55,6 +56,13 @@ pub const WITHIN: Field = Field::quantity(
 .above_zero()
 .default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
 
+pub const KEEP_AXIAL_LOAD: Field = Field::choice(
+    "keep_axial_load",
+    TRUTH,
+    "the axial load of a `preload` stays on, for another procedure",
+)
+.default_in_words("false");
+
 pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Unload),
     keyword: &["unload"],
@@ -64,6 +72,7 @@ pub const BLOCK: BlockKind = BlockKind {
         STIFFNESS.described("expected unloading stiffness; the storeys of a frame have their own"),
         WITHIN,
         SPEED,
+        KEEP_AXIAL_LOAD,
     ],
     exports: &[],
     results: RESULTS,

@@ -14,4 +14,6 @@ pub struct Unload {
     pub within: Option<Formula>,
     /// \[m/s\], of the floor with the longest move.
     pub speed: Option<Formula>,
+    /// Whether the axial load of a `preload` stays on.
+    pub keep_axial_load: bool,
 }

@@ -169,6 +169,7 @@ fn rest() -> Procedure {
             stiffness: None,
             within: None,
             speed: None,
+            keep_axial_load: false,
         }),
     }
 }
@@ -219,6 +220,7 @@ pub(super) fn unloading() -> Plan {
         stiffness: Some(Constant(500.0)),
         within: None,
         speed: None,
+        keep_axial_load: false,
     };
     yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
 }
@@ -286,6 +288,7 @@ pub(super) fn frame_row() -> Plan {
         stiffness: None,
         within: Some(Constant(1e-6)),
         speed: None,
+        keep_axial_load: false,
     });
     plan.procedures.push(Procedure {
         name: "rest".to_owned(),

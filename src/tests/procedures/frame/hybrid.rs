@@ -313,6 +313,7 @@ pub(super) fn twice(parts: [Part; 3]) -> Plan {
         stiffness: None,
         within: Some(Constant(1e-6)),
         speed: None,
+        keep_axial_load: false,
     });
     let named = |name: &str, kind| Procedure {
         name: name.to_owned(),

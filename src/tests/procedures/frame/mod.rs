@@ -60,6 +60,7 @@ pub(super) fn rest(within: Option<f64>) -> ProcedureKind {
         stiffness: None,
         within: within.map(Constant),
         speed: None,
+        keep_axial_load: false,
     })
 }
 

@@ -8,7 +8,8 @@ use crate::tests::testing::{elastic_plan, run_unwatched};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::unload::block::RESIDUAL_DISPLACEMENT;
 use psd_plan::record::{
-    EventKind, Floors as _, History, Outcome, Record, ShakeHistory, ShakeStep, UnloadStep,
+    EventKind, Floors as _, History, Outcome, ProcedureRecord, Record, ShakeHistory, ShakeStep,
+    UnloadStep,
 };
 use psd_plan::{
     AxialAxis, AxisPlan, Behaviour, Frame, Integrator, Interval, Link, Move, Part, Plan, Preload,
@@ -234,6 +235,31 @@ fn unloading_takes_the_load_off_and_leaves_the_set_of_the_column() {
     assert!(
         numbers.windows(2).all(|pair| pair[0] < pair[1]),
         "{numbers:?}"
+    );
+}
+
+/// Between two tests it comes to rest under the load: (K u − R)/(K − φ N/h).
+#[test]
+fn unloading_keeps_an_axial_load_that_another_test_needs() {
+    let (reached, stiffness, force) = (0.03, 4e6, 2.5e5);
+    let mut between = rest(None);
+    if let ProcedureKind::Unload(unload) = &mut between {
+        unload.keep_axial_load = true;
+    }
+    let procedures = vec![to(reached), between, to(0.02), rest(None)];
+    let plan = preloaded(&column(procedures), 0, force, 1.0);
+    let record = after_preload(&plan);
+    let spring = 4e4 + 0.08 * stiffness * (reached - 0.01);
+    let under_load = (stiffness * reached - spring) / (stiffness - force / HEIGHT);
+    let [_, between, after, rest] = &record.procedures[..] else {
+        panic!()
+    };
+    let found = between.number(RESIDUAL_DISPLACEMENT.name).unwrap();
+    close(&[found], &[under_load], 1e-3 * (reached - under_load));
+    let last = |procedure: &ProcedureRecord| procedure.axial.last().unwrap().force;
+    assert_eq!(
+        [last(between), last(after), last(rest)],
+        [force, force, 0.0]
     );
 }
 

@@ -184,6 +184,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
         stiffness: Some(Constant(500.0)),
         within: None,
         speed: None,
+        keep_axial_load: false,
     };
     let mut single = elastic_plan(1.0, vec![ProcedureKind::Unload(unload)]);
     single.specimens[0].coulomb = 0.2;

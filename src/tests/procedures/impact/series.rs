@@ -123,6 +123,7 @@ fn every_impact_of_a_series_equals_a_single_one() {
         stiffness: Some(Constant(2e4)),
         within: None,
         speed: None,
+        keep_axial_load: false,
     });
     let mut written = Vec::new();
     for _ in velocities {
