@@ -85,21 +85,25 @@ pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Proced
     "frame `{specimen}` requires {storeys} actuators and load cells, but rig `{rig}` has one"
 )]
 #[help(
-    "list them in the rig, the lowest storey first: axes = [{}]; or leave `--rig` out for a virtual rig",
+    "list them in the rig, {order}: axes = [{}]; or leave `--rig` out for a virtual rig",
     vec!["axis"; storeys].join(", ")
 )]
 struct FrameOnOneAxis<'a> {
     specimen: &'a str,
     storeys: usize,
     rig: &'a str,
-    #[label("moves all storeys")]
+    order: &'a str,
+    moved: &'a str,
+    #[label("moves {moved}")]
     span: Span,
 }
 
 struct OneDegreeOfFreedom<'a> {
     keyword: &'a str,
     specimen: &'a str,
+    /// Or degrees of freedom, with elements.
     storeys: usize,
+    has_elements: bool,
     span: Span,
     declared: Option<Span>,
 }
@@ -112,20 +116,35 @@ impl Violation for OneDegreeOfFreedom<'_> {
             keyword,
             specimen,
             storeys,
+            has_elements,
             span,
             declared,
         } = self;
+        let [moves, counted, procedures] = if has_elements {
+            [
+                "moves one degree of freedom",
+                "degrees of freedom",
+                "`shake`, `impact` or `unload` for a frame with elements",
+            ]
+        } else {
+            [
+                "drives one actuator",
+                "storeys",
+                "`shake`, `impact`, `escalate` or `unload` for a frame",
+            ]
+        };
         let diagnostic = Diagnostic::new(
             Self::CODE,
-            format!("`{keyword}` drives one actuator, but the frame `{specimen}` has {storeys}"),
+            format!("`{keyword}` {moves}, but the frame `{specimen}` has {storeys}"),
         )
         .at(span, "one degree of freedom");
         let diagnostic = match declared {
-            Some(declared) => diagnostic.at(declared, format!("{storeys} storeys")),
+            Some(declared) => diagnostic.at(declared, format!("{storeys} {counted}")),
             None => diagnostic,
         };
-        diagnostic.help("use `shake`, `impact`, `escalate` or `unload` for a frame, or test a single-degree-of-freedom \
-     specimen in a separate plan")
+        diagnostic.help(format!(
+            "use {procedures}, or test a single-degree-of-freedom specimen in a separate plan"
+        ))
     }
 }
 
@@ -216,7 +235,8 @@ pub fn check_axes(
     };
     axes::check_specimen(checker, rig, specimen);
     let frame = specimen.frame.as_ref();
-    if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+    let has_elements = frame.is_some_and(|frame| !frame.elements.is_empty());
+    if has_elements {
         for (block, procedure) in procedures {
             let kind = procedure.as_ref().map(|procedure| &procedure.kind);
             if let Some(kind) = kind.filter(|kind| procedures::facts_of(kind).unloads_storeys) {
@@ -258,6 +278,16 @@ pub fn check_axes(
                     specimen: &specimen.name,
                     storeys,
                     rig,
+                    order: if has_elements {
+                        "in the order of the elements"
+                    } else {
+                        "the lowest storey first"
+                    },
+                    moved: if has_elements {
+                        "all tested elements"
+                    } else {
+                        "all storeys"
+                    },
                     span: head,
                 }
                 .diagnostic()
@@ -269,6 +299,7 @@ pub fn check_axes(
                     keyword,
                     specimen: &specimen.name,
                     storeys: floors,
+                    has_elements,
                     span: head,
                     declared,
                 });

@@ -54,8 +54,10 @@ pub(crate) struct Recorded {
     pub time_spans: Option<(f64, f64)>,
     /// Results that have an uncertainty budget even if no requirement reads any.
     pub budgeted: &'static [&'static str],
-    /// The name of the entries of its lists, if the names of the lists do not give it; of elements, whatever the name.
+    /// The name of the entries of its lists, if the names of the lists do not give it.
     pub entries: &'static str,
+    /// The name of the entries of its lists of drifts and shears.
+    pub members: &'static str,
     /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,
     /// A result that says nothing if its expanded uncertainty includes zero.
@@ -71,6 +73,7 @@ impl Default for Recorded {
             time_spans: None,
             budgeted: &[],
             entries: "number",
+            members: "storey",
             uncertainty: unload::uncertainty::UNCERTAINTY,
             distinct_from_zero: None,
             strokes: None,

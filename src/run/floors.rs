@@ -56,9 +56,24 @@ impl Session<'_> {
 
     /// Standard deviation of the measured base shear \[N\].
     pub(crate) fn base_shear_noise(&self) -> f64 {
-        self.storey_readings()
-            .first()
-            .map_or(0.0, StoreyReadings::shear_noise)
+        let Some(elements) = self.assemblies().and_then(Assemblies::elements) else {
+            return self
+                .storey_readings()
+                .first()
+                .map_or(0.0, StoreyReadings::shear_noise);
+        };
+        let each = elements.ends.iter().zip(self.element_noise());
+        let on_the_ground = each.filter(|(ends, _)| ends.contains(&None));
+        on_the_ground.fold(0.0, |all, (_, noise)| noise.hypot(all))
+    }
+
+    /// Standard deviation of the measured force of each element of a frame of matrices \[N\]; none without elements.
+    pub(crate) fn element_noise(&self) -> Vec<f64> {
+        if self.assemblies().and_then(Assemblies::elements).is_none() {
+            return Vec::new();
+        }
+        let readings = self.storey_readings();
+        readings.iter().map(StoreyReadings::shear_noise).collect()
     }
 
     /// Commanded displacements of the floors \[m\], and the reading there. The computed storeys are at rest at zero shear.

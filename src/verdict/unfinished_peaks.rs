@@ -10,7 +10,9 @@ use psd_plan::formula::{
 use psd_plan::procedures::escalate::block as series;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::procedures::shake::block as shake_schema;
-use psd_plan::record::{EscalateHistory, History, ImpactHistory, SeriesImpact, ShakeHistory};
+use psd_plan::record::{
+    EscalateHistory, FloorMotion, Floors, History, ImpactHistory, SeriesImpact, ShakeHistory,
+};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Condition, DecisionRule};
@@ -219,8 +221,12 @@ fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth>
         number(growing, what, "size")
     } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
         list(&frame?.growing.floors, "floor", "displacement")
-    } else if is(result, &[schema::MAX_DRIFT]) {
-        list(&frame?.growing.storeys, "storey", "drift")
+    } else if is(result, &[schema::MAX_DRIFT, schema::MAX_ELEMENT_FORCE]) {
+        let frame = frame?;
+        let [member, drift] = words(frame.floors.first().map(|step| &step.floors));
+        let force = is(result, &[schema::MAX_ELEMENT_FORCE]);
+        let largest = if force { "force" } else { drift };
+        list(&frame.growing.storeys, member, largest)
     } else {
         None
     }
@@ -228,23 +234,39 @@ fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth>
 
 /// Growth of a result of a ground-motion test that a drift ended: every peak may have come later.
 fn of_shake(shake: &ShakeHistory, result: &str, name: &str) -> Option<Growth> {
-    let storey = shake.drift_reached? + 1;
+    let number = shake.drift_reached? + 1;
     let peaks = [
         shake_schema::MAX_DISPLACEMENT,
         shake_schema::MAX_DRIFT,
         shake_schema::MAX_BASE_SHEAR,
+        shake_schema::MAX_ELEMENT_FORCE,
     ];
-    let floors = shake.steps.last()?.floors.computed.len();
+    let last = &shake.steps.last()?.floors;
+    let [member, drift] = words(Some(last));
     is(result, &peaks).then(|| Growth {
-        entries: (0..floors).collect(),
-        why: format!("the drift of storey {storey} ended {name}: the peak is not reached"),
+        entries: (0..entries_of(last)).collect(),
+        why: format!("the {drift} of {member} {number} ended {name}: the peak is not reached"),
     })
 }
 
-/// The number of floors of a struck frame; None for one degree of freedom.
+/// A storey and its drift, or an element and its deformation.
+fn words(floors: Option<&FloorMotion>) -> [&'static str; 2] {
+    if floors.is_some_and(Floors::has_elements) {
+        ["element", "deformation"]
+    } else {
+        ["storey", "drift"]
+    }
+}
+
+/// The most entries that a list of floors, storeys or elements has.
+fn entries_of(floors: &FloorMotion) -> usize {
+    floors.computed.len().max(floors.elements.len())
+}
+
+/// The most entries of a list of a struck frame; None for one degree of freedom.
 fn floors_of(impact: &ImpactHistory) -> Option<usize> {
     let last = impact.frame.as_ref()?.floors.last()?;
-    Some(last.floors.computed.len())
+    Some(entries_of(&last.floors))
 }
 
 /// Whether this is the name of one of these results.
@@ -253,13 +275,14 @@ fn is(result: &str, kinds: &[ResultKind]) -> bool {
 }
 
 /// Results that a moving striker can still increase.
-const PUSHED: [ResultKind; 6] = [
+const PUSHED: [ResultKind; 7] = [
     schema::MAX_DISPLACEMENT,
     schema::TIME_OF_MAX_DISPLACEMENT,
     schema::ABSORBED_ENERGY,
     schema::MAX_BASE_SHEAR,
     schema::FLOOR_DISPLACEMENT,
     schema::MAX_DRIFT,
+    schema::MAX_ELEMENT_FORCE,
 ];
 
 /// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not

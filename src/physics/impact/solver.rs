@@ -15,7 +15,6 @@ use crate::integrator::state::State;
 use crate::integrator::step_form::{StepContact, StepForm};
 use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
-use crate::structure::drifts_to;
 use crate::structure::elements::ElementReading;
 use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
@@ -459,7 +458,7 @@ impl<V: HasTangents> ImpactSolver<V> {
         until.reached(
             || self.finished(),
             || self.rebounded(),
-            |drift| drifts_to(self.structure.state().displacement.as_slice(), drift),
+            |drift| self.structure.state().drifts_to(drift),
         )
     }
 

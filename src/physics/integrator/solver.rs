@@ -101,6 +101,13 @@ impl<V: HasTangents> Solver<V> {
             |_, [load, force]| load - force,
         );
         form.mass_factor().solve(&mut acceleration);
+        let velocity = zero();
+        let mut read = Vec::new();
+        if let Some((elements, start)) = input.elements {
+            read.extend_from_slice(start);
+            let motion = [displacement.as_slice(), velocity.as_slice()];
+            elements.complete(motion, input.i_modification, &mut read);
+        }
         Ok(Self {
             form,
             modification: input
@@ -113,7 +120,7 @@ impl<V: HasTangents> Solver<V> {
                 target: displacement.clone(),
                 measured_displacement: displacement.clone(),
                 displacement,
-                velocity: zero(),
+                velocity,
                 acceleration,
                 restoring_force: force.clone(),
                 gravity_force,
@@ -123,9 +130,7 @@ impl<V: HasTangents> Solver<V> {
                     .as_ref()
                     .map(|followed| followed.stiffness().clone())
                     .unwrap_or_default(),
-                elements: input
-                    .elements
-                    .map_or_else(Vec::new, |(_, read)| read.to_vec()),
+                elements: read,
                 energies: FrameEnergies::default(),
             },
             tangents,
@@ -396,6 +401,8 @@ impl<V: HasTangents> Solver<V> {
             next,
             load_end,
             damping_work,
+            modification,
+            elements,
             ..
         } = self;
         let time_step = form.time_step;
@@ -415,6 +422,13 @@ impl<V: HasTangents> Solver<V> {
         state.acceleration.take_over(&mut next.acceleration);
         state.force_at_computed.take_over(&mut next.force);
         state.load.take_over(load_end);
+        if let Some(elements) = elements {
+            elements.complete(
+                [state.displacement.as_slice(), state.velocity.as_slice()],
+                modification.is_some(),
+                &mut state.elements,
+            );
+        }
         state.step += 1;
         // A signed number is converted in one instruction.
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]

@@ -2,8 +2,9 @@
 
 use super::step_form::Moment;
 use crate::structure::FrameEnergies;
-use crate::structure::elements::ElementReading;
+use crate::structure::elements::{ElementReading, member_drifts};
 use crate::structure::matrix::Vector;
+use crate::structure::{drifts, drifts_to, shears};
 
 /// The end of a step; step 0 is the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,51 @@ impl<V: Vector> State<V> {
     pub fn base_shear(&self) -> f64 {
         let sum = |forces: &V| forces.as_slice().iter().sum::<f64>();
         sum(&self.restoring_force) - sum(&self.gravity_force)
+    }
+
+    /// Drifts that it has: of its storeys, or of its elements.
+    #[must_use]
+    pub fn members(&self) -> usize {
+        if self.elements.is_empty() {
+            self.displacement.as_slice().len()
+        } else {
+            self.elements.len()
+        }
+    }
+
+    /// Computed drift of each storey, or deformation of each element \[m\].
+    pub fn drifts(&self, drift: &mut [f64]) {
+        member_drifts(self.displacement.as_slice(), &self.elements, drift);
+    }
+
+    /// Whether a drift or deformation is at least `limit` \[m\] in absolute value.
+    #[must_use]
+    pub(crate) fn drifts_to(&self, limit: f64) -> bool {
+        if self.elements.is_empty() {
+            return drifts_to(self.displacement.as_slice(), limit);
+        }
+        let mut elements = self.elements.iter();
+        elements.any(|read| read.computed.abs() >= limit)
+    }
+
+    /// The rate of each drift or deformation \[m/s\].
+    pub fn drift_velocities(&self, rate: &mut [f64]) {
+        if self.elements.is_empty() {
+            drifts(self.velocity.as_slice(), rate);
+        }
+        for (rate, element) in rate.iter_mut().zip(&self.elements) {
+            *rate = element.velocity;
+        }
+    }
+
+    /// Shear of each storey, or force of each element, at the computed displacements \[N\].
+    pub fn shears_at_computed(&self, shear: &mut [f64]) {
+        if self.elements.is_empty() {
+            shears(self.force_at_computed.as_slice(), shear);
+        }
+        for (shear, element) in shear.iter_mut().zip(&self.elements) {
+            *shear = element.force_at_computed;
+        }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
 use crate::structure::elements::Elements;
 use crate::structure::substructures::StoreyReadings;
-use crate::structure::{FrameMatrices, SymmetricBand, drifts, shears, widen};
+use crate::structure::{FrameMatrices, SymmetricBand, widen};
 
 /// The settings with which a frame is integrated.
 #[derive(Clone, Debug)]
@@ -56,13 +56,15 @@ pub struct FloorImpact {
     pub body: ImpactInput,
 }
 
-/// The results of the floors in SI, with one entry per floor or storey.
+/// The results of the floors in SI, with one entry per floor, or per storey or element.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Floors {
     pub max_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
-    /// Storey drift at the end.
+    /// Storey drift or deformation of an element at the end.
     pub final_drift: Vec<f64>,
+    /// Of each element of a frame of matrices; empty without elements.
+    pub max_element_force: Vec<f64>,
     pub max_base_shear: f64,
 }
 
@@ -100,7 +102,7 @@ pub struct FloorImpactOutcome {
 /// Results of an impact on one floor beside those of the impact and of the floors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrikerOutcome {
-    /// ∫ shear d(storey drift) of each storey \[J\].
+    /// ∫ shear d(storey drift) of each storey, or of the force of each element \[J\].
     pub storey_energy: Vec<f64>,
     /// Steps in contact from the first touch on.
     pub first_contact_steps: u64,
@@ -149,7 +151,7 @@ impl FrameRun {
         self.matrices.ground_load(at(0), &mut load);
         let time_step = self.time_step / f64::from(readings.finer);
         let mut solver = FrameSolver::new(&self.input(&retrace, &load, time_step))?;
-        let mut peaks = Peaks::new(self.matrices.order(), time_step);
+        let mut peaks = Peaks::new(solver.state(), time_step);
         peaks.take(solver.state(), 1.0);
         let mut velocities_at_targets = TargetVelocities::new(self, path);
         for step in (1..)
@@ -206,7 +208,7 @@ impl FrameRun {
         let departed = Cell::new(false);
         let mut found = StruckFloors {
             impact: ImpactResults::new(&body, until, &start),
-            peaks: Peaks::new(order, body.time_step),
+            peaks: Peaks::new(solver.structure(), body.time_step),
             energy: StoreyWork::new(solver.structure()),
             first_contact_steps: 0,
             first_is_over: false,
@@ -311,38 +313,42 @@ impl TargetVelocities {
     }
 }
 
-/// Peaks of all floors and storeys, step by step.
+/// Peaks of all floors, and of all storeys or elements, step by step.
 struct Peaks {
     ends: Floors,
     displacement: PeakDisplacements,
     drift: PeakDisplacements,
+    element_force: Vec<Peak>,
     base_shear: Peak,
     time_step: f64,
     velocity: Vec<f64>,
-    /// Storey drift and its velocity at the end of the last step.
+    /// Storey drift, or deformation, and its velocity at the end of the last step.
     last: Vec<(f64, f64)>,
-    /// Storey drift inside the last step, where the run ends.
+    /// The same inside the last step, where the run ends.
     final_inside: Vec<f64>,
     before_departure: Option<Floors>,
 }
 
 impl Peaks {
-    fn new(floors: usize, time_step: f64) -> Self {
-        let nothing = || vec![0.0; floors];
+    fn new(start: &FrameState, time_step: f64) -> Self {
+        let (floors, members) = (start.displacement.len(), start.members());
+        let nothing = || vec![0.0; members];
         let ends = Floors {
-            max_displacement: nothing(),
+            max_displacement: vec![0.0; floors],
             max_drift: nothing(),
             final_drift: nothing(),
+            max_element_force: vec![0.0; start.elements.len()],
             max_base_shear: 0.0,
         };
         Self {
             ends,
             displacement: PeakDisplacements::new(floors, time_step),
-            drift: PeakDisplacements::new(floors, time_step),
+            drift: PeakDisplacements::new(members, time_step),
+            element_force: vec![Peak::default(); start.elements.len()],
             base_shear: Peak::default(),
             time_step,
             velocity: nothing(),
-            last: vec![(0.0, 0.0); floors],
+            last: vec![(0.0, 0.0); members],
             final_inside: nothing(),
             before_departure: None,
         }
@@ -350,10 +356,19 @@ impl Peaks {
 
     /// Adds the end of a step, of which the run counts this fraction.
     fn take(&mut self, state: &FrameState, share: f64) {
-        drifts(&state.displacement, &mut self.ends.final_drift);
-        drifts(&state.velocity, &mut self.velocity);
+        state.drifts(&mut self.ends.final_drift);
+        state.drift_velocities(&mut self.velocity);
         widen(&mut self.ends.max_displacement, &state.displacement);
         widen(&mut self.ends.max_drift, &self.ends.final_drift);
+        let forces = self
+            .ends
+            .max_element_force
+            .iter_mut()
+            .zip(&mut self.element_force);
+        for ((largest, peak), element) in forces.zip(&state.elements) {
+            *largest = largest.max(element.force.abs());
+            peak.take(element.force);
+        }
         let shear = state.base_shear();
         self.ends.max_base_shear = self.ends.max_base_shear.max(shear.abs());
         self.displacement.take(
@@ -396,6 +411,7 @@ impl Peaks {
             max_displacement: self.displacement.largest().to_vec(),
             max_drift: self.drift.largest().to_vec(),
             final_drift: self.final_inside.clone(),
+            max_element_force: self.element_force.iter().map(Peak::largest).collect(),
             max_base_shear: self.base_shear.largest(),
         }
     }
@@ -411,7 +427,7 @@ impl Peaks {
     }
 }
 
-/// ∫ shear d(storey drift) of each storey by the trapezoidal rule \[J\].
+/// ∫ shear d(storey drift) of each storey, or of the force of each element, by the trapezoidal rule \[J\].
 struct StoreyWork {
     drift: Vec<f64>,
     shear: Vec<f64>,
@@ -420,22 +436,22 @@ struct StoreyWork {
 
 impl StoreyWork {
     fn new(start: &FrameState) -> Self {
-        let nothing = || vec![0.0; start.displacement.len()];
+        let nothing = || vec![0.0; start.members()];
         let mut work = Self {
             drift: nothing(),
             shear: nothing(),
             storeys: nothing(),
         };
-        drifts(&start.displacement, &mut work.drift);
-        shears(&start.force_at_computed, &mut work.shear);
+        start.drifts(&mut work.drift);
+        start.shears_at_computed(&mut work.shear);
         work
     }
 
     /// Adds the end of a step, of which the run counts this fraction.
     fn take(&mut self, state: &FrameState, share: f64) {
         let (mut drift, mut shear) = (vec![0.0; self.drift.len()], vec![0.0; self.shear.len()]);
-        drifts(&state.displacement, &mut drift);
-        shears(&state.force_at_computed, &mut shear);
+        state.drifts(&mut drift);
+        state.shears_at_computed(&mut shear);
         for storey in 0..drift.len() {
             let moved = drift[storey] - self.drift[storey];
             self.storeys[storey] += share * 0.5 * (self.shear[storey] + shear[storey]) * moved;

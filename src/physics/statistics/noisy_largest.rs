@@ -39,6 +39,12 @@ impl NoisyLargest {
         }
     }
 
+    /// One for each of these standard deviations.
+    #[must_use]
+    pub fn of_each(noise: &[f64]) -> Vec<Self> {
+        noise.iter().map(|noise| Self::new(*noise)).collect()
+    }
+
     /// As [`Self::new`], with these readings.
     #[must_use]
     pub fn of(noise: f64, readings: impl Iterator<Item = f64>) -> Self {

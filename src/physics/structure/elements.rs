@@ -4,6 +4,7 @@
 //! R = K x + Σ b f(bᵀx), where b is +1 at the second end of an element, −1 at the first, and 0 elsewhere. The ground has no entry.
 
 use super::SymmetricBand;
+use super::shear_building::drifts;
 
 /// The degrees of freedom, from 0, that a storey or an element joins: from the first to the second. None is the ground.
 pub type ElementEnds = [Option<usize>; 2];
@@ -62,6 +63,37 @@ pub struct ElementReading {
     pub deformation: f64,
     /// \[N\]
     pub force: f64,
+    /// Computed bᵀX \[m\]: the imposed one, except under α-OS.
+    pub computed: f64,
+    /// Computed bᵀẊ \[m/s\].
+    pub velocity: f64,
+    /// Force of the recursion at bᵀX \[N\]: the reading, as corrected by the I-modification and α-OS.
+    pub force_at_computed: f64,
+}
+
+impl ElementReading {
+    /// A reading without a recursion: computed is as measured, at rest.
+    #[must_use]
+    pub const fn at_rest(target: f64, [deformation, force]: [f64; 2]) -> Self {
+        Self {
+            target,
+            deformation,
+            force,
+            computed: deformation,
+            velocity: 0.0,
+            force_at_computed: force,
+        }
+    }
+}
+
+/// Drift of each storey \[m\] at these displacements of the floors; of a frame of matrices with elements, the deformation of each.
+pub fn member_drifts(displacement: &[f64], elements: &[ElementReading], drift: &mut [f64]) {
+    if elements.is_empty() {
+        drifts(displacement, drift);
+    }
+    for (drift, element) in drift.iter_mut().zip(elements) {
+        *drift = element.computed;
+    }
 }
 
 /// The elements of a frame and the stiffness beside them.
@@ -82,6 +114,27 @@ impl Elements {
         operator.copy_from(&self.matrix);
         let ends = self.ends.iter().copied();
         operator.add_springs(ends.zip(stiffness.iter().copied()));
+    }
+
+    /// The motion of each element at the end of a step, from the displacements \[m\] and velocities \[m/s\] of the degrees of freedom. With
+    /// the I-modification its force changes from its measured deformation to bᵀX, without it from the imposed one, as that of the floors.
+    pub(crate) fn complete(
+        &self,
+        [displacement, velocity]: [&[f64]; 2],
+        is_modified: bool,
+        readings: &mut [ElementReading],
+    ) {
+        let each = self.ends.iter().zip(&self.operator_stiffness);
+        for ((ends, stiffness), read) in each.zip(readings) {
+            let from = if is_modified {
+                read.deformation
+            } else {
+                read.target
+            };
+            read.computed = deformation(*ends, displacement);
+            read.velocity = deformation(*ends, velocity);
+            read.force_at_computed = read.force + stiffness * (read.computed - from);
+        }
     }
 
     /// Takes from the forces \[N\] those by which an element differs at its measured deformation from its target: r* = r − k (u − ũ).

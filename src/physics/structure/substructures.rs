@@ -664,19 +664,12 @@ impl Substructures {
         let read = members.zip(&self.assemblies.scales);
         read.map(|((ends, computed), scale)| {
             if let Some(element) = computed {
-                return ElementReading {
-                    target: element.drift,
-                    deformation: element.drift,
-                    force: element.shear,
-                };
+                return ElementReading::at_rest(element.drift, [element.drift, element.shear]);
             }
             let target = deformation(*ends, &self.imposed);
             let (displacement, force) = axes.next().unwrap_or((&0.0, &0.0));
-            ElementReading {
-                target,
-                deformation: displacement / scale.displacement,
-                force: force * scale.forces(),
-            }
+            let deformation = displacement / scale.displacement;
+            ElementReading::at_rest(target, [deformation, force * scale.forces()])
         })
         .collect()
     }

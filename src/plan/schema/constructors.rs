@@ -232,6 +232,8 @@ impl ResultKind {
             list: false,
             fraction: false,
             of_storey: false,
+            of_each_member: false,
+            of_elements: false,
             decided_by_condition: false,
             grows_as_inverse_step: false,
             made_of: None,
@@ -257,6 +259,22 @@ impl ResultKind {
     pub const fn of_storey(self) -> Self {
         Self {
             of_storey: true,
+            ..self
+        }
+    }
+
+    /// Of a frame of matrices with elements, an entry for each element.
+    pub const fn of_each_member(self) -> Self {
+        Self {
+            of_each_member: true,
+            ..self
+        }
+    }
+
+    /// Only a frame of matrices with elements has it.
+    pub const fn of_elements(self) -> Self {
+        Self {
+            of_elements: true,
             ..self
         }
     }

@@ -227,6 +227,10 @@ pub struct ResultKind {
     pub fraction: bool,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
+    /// Whether a frame of matrices with elements has an entry for each element, not for each degree of freedom.
+    pub of_each_member: bool,
+    /// Whether only a frame of matrices with elements has it.
+    pub of_elements: bool,
     /// Whether the condition decides it under which the next impact of a series follows.
     pub decided_by_condition: bool,
     /// Whether it grows as 1/Δt where the contact force is that of an impulse over one step.

@@ -4,12 +4,13 @@
 use super::check::time_step::time_step_before_the_run;
 use super::{figures, report, results};
 use crate::procedures::facts::{Delay, Facts, Motion, Recorded, Tests};
+use crate::procedures::shake::figures::charts::{entries_of, members_of};
 use crate::procedures::stepping;
 use crate::procedures::stepping::self_tested::stepped;
 use crate::procedures::stepping::tracking::{delay as actuator_delay, frame_delay};
 use psd_physics::self_test::SelfTestPart;
 use psd_plan::formula::Formula;
-use psd_plan::record::ImpactHistory;
+use psd_plan::record::{Floors, ImpactHistory};
 use psd_plan::{
     Dependence, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Until,
 };
@@ -56,6 +57,11 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
 pub(crate) fn recorded(history: &ImpactHistory) -> Recorded {
     let ends = history.steps.first().zip(history.steps.last());
     let of_frame = history.frame.is_some();
+    let floors = history
+        .frame
+        .as_ref()
+        .and_then(|frame| frame.floors.first());
+    let elements = floors.is_some_and(Floors::has_elements);
     Recorded {
         lists_are_tabled: of_frame,
         time_spans: ends
@@ -66,6 +72,8 @@ pub(crate) fn recorded(history: &ImpactHistory) -> Recorded {
             report::BUDGET
         },
         uncertainty: stepping::report::UNCERTAINTY,
+        entries: entries_of(elements),
+        members: members_of(elements),
         ..Recorded::default()
     }
 }

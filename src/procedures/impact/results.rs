@@ -2,6 +2,7 @@
 //! the order of the reference; for a frame also the peaks of every floor and storey. It moves nothing.
 
 use crate::procedures::common::results::Evaluated;
+use crate::procedures::shake::results::largest_forces;
 use crate::procedures::stepping::energy;
 use crate::procedures::stepping::tracking::{TrackingSummary, tracking_results};
 use crate::run::session::Session;
@@ -13,11 +14,11 @@ use psd_physics::impact::{ImpactInput, ImpactState};
 use psd_physics::integrator::state::State;
 use psd_physics::reintegration::impact::ImpactValues;
 use psd_physics::statistics::noisy_largest::NoisyLargest;
+use psd_physics::structure::elements::{ElementReading, member_drifts};
 use psd_physics::structure::matrix::Vector;
-use psd_physics::structure::{drifts, shears, widen};
+use psd_physics::structure::widen;
 use psd_plan::Until;
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::history::floors::drift_of;
 use psd_plan::record::{
     EventKind, FloorMotion, Floors as _, ImpactHistory, NamedResult, StillGrowing, StruckFrame,
 };
@@ -38,7 +39,10 @@ pub(crate) fn results(
     results.extend(tracking_results(followed.worst(), tracking));
     results.extend(of_steps(history));
     if let Some(frame) = &history.frame {
-        results.extend(of_frame(summary.and_then(StruckSummary::floors), frame));
+        let floors = summary.and_then(StruckSummary::floors);
+        results.extend(of_frame(floors, frame));
+        let forces = floors.and_then(|floors| largest_forces(&floors.element_force));
+        results.extend(forces.map(|forces| schema::MAX_ELEMENT_FORCE.found_list(Some(forces))));
         results.extend(followed.of_each());
     }
     results
@@ -248,10 +252,16 @@ impl StruckSummary {
         }
     }
 
-    /// On one floor; `body` is that floor with the striker, `noise` the standard deviation of the measured base shear \[N\].
-    pub(crate) fn of_frame(body: &ImpactInput, floors: usize, noise: f64) -> Self {
+    /// On one floor; `body` is that floor with the striker, `noise` the standard deviation of the measured base shear \[N\], `of_elements`
+    /// of the measured force of each element.
+    pub(crate) fn of_frame(
+        body: &ImpactInput,
+        floors: usize,
+        noise: f64,
+        of_elements: &[f64],
+    ) -> Self {
         Self {
-            floors: Some(FloorSummary::new(body, floors, noise)),
+            floors: Some(FloorSummary::new(body, floors, noise, of_elements)),
             ..Self::new(body)
         }
     }
@@ -287,18 +297,19 @@ impl StruckSummary {
         }
     }
 
-    /// Adds a reading on the way to a target that was not reached: the floors with the struck one, by this time \[s\]. `gravity_force`
-    /// is G X there \[N\].
+    /// Adds a reading on the way to a target that was not reached: the floors with the struck one, by this time \[s\], and the elements.
+    /// `gravity_force` is G X there \[N\].
     pub(crate) fn moved_to(
         &mut self,
         struck: usize,
         reading: &Reading,
+        elements: &[ElementReading],
         gravity_force: &[f64],
         time: f64,
     ) {
         self.impact.moved_to(reading.displacement[struck], time);
         if let Some(floors) = &mut self.floors {
-            floors.moved_to(reading, gravity_force);
+            floors.moved_to(reading, elements, gravity_force);
         }
     }
 
@@ -318,13 +329,15 @@ pub(crate) struct FloorSummary {
     time_step: f64,
     pub floor_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
-    /// Storey drifts at the end of the last step \[m\]; their shears \[N\] follow from the effective forces of the recursion.
+    /// Storey drifts or deformations of elements at the end of the last step \[m\]; their shears \[N\] follow from the effective forces of the recursion.
     pub drift: Vec<f64>,
     shear: Vec<f64>,
     /// Drifts and shears of the present step.
     next_drift: Vec<f64>,
     next_shear: Vec<f64>,
     storey_energy: Vec<f64>,
+    /// Of each element of a frame of matrices.
+    element_force: Vec<NoisyLargest>,
     base_shear: NoisyLargest,
     /// The measured base shear \[N\].
     shear_force: Growing,
@@ -334,17 +347,23 @@ pub(crate) struct FloorSummary {
 }
 
 impl FloorSummary {
-    fn new(body: &ImpactInput, floors: usize, noise: f64) -> Self {
-        let nothing = || vec![0.0; floors];
+    fn new(body: &ImpactInput, floors: usize, noise: f64, of_elements: &[f64]) -> Self {
+        let members = if of_elements.is_empty() {
+            floors
+        } else {
+            of_elements.len()
+        };
+        let nothing = || vec![0.0; members];
         Self {
             time_step: body.time_step,
-            floor_displacement: nothing(),
+            floor_displacement: vec![0.0; floors],
             max_drift: nothing(),
             drift: nothing(),
             shear: nothing(),
             next_drift: nothing(),
             next_shear: nothing(),
             storey_energy: nothing(),
+            element_force: NoisyLargest::of_each(of_elements),
             base_shear: NoisyLargest::new(noise),
             shear_force: Growing::default(),
             first_impact: 0,
@@ -354,8 +373,8 @@ impl FloorSummary {
     }
 
     fn push<V: Vector>(&mut self, structure: &State<V>, state: &ImpactState) {
-        drifts(structure.displacement.as_slice(), &mut self.next_drift);
-        shears(structure.force_at_computed.as_slice(), &mut self.next_shear);
+        structure.drifts(&mut self.next_drift);
+        structure.shears_at_computed(&mut self.next_shear);
         let (drift, shear) = (&self.next_drift, &self.next_shear);
         // Σ ½(V + V₁)Δδ over the storeys equals ½(R + R₁)ᵀΔX over the floors. Step 0 is the start.
         if structure.step > 0 {
@@ -371,6 +390,7 @@ impl FloorSummary {
             structure.displacement.as_slice(),
         );
         widen(&mut self.max_drift, &self.drift);
+        self.read_forces(&structure.elements);
         let base_shear = structure.base_shear().abs();
         self.base_shear.push(base_shear);
         self.shear_force.push(base_shear);
@@ -382,9 +402,17 @@ impl FloorSummary {
         self.striker_velocity = state.striker_velocity;
     }
 
-    fn moved_to(&mut self, reading: &Reading, gravity_force: &[f64]) {
+    fn read_forces(&mut self, elements: &[ElementReading]) {
+        for (largest, element) in self.element_force.iter_mut().zip(elements) {
+            largest.push(element.force.abs());
+        }
+    }
+
+    fn moved_to(&mut self, reading: &Reading, elements: &[ElementReading], gravity_force: &[f64]) {
         widen(&mut self.floor_displacement, &reading.displacement);
-        widen(&mut self.max_drift, &drift_of(&reading.displacement));
+        member_drifts(&reading.displacement, elements, &mut self.next_drift);
+        widen(&mut self.max_drift, &self.next_drift);
+        self.read_forces(elements);
         let sum = |forces: &[f64]| forces.iter().sum::<f64>();
         self.base_shear
             .push((sum(&reading.force) - sum(gravity_force)).abs());
@@ -402,7 +430,7 @@ impl FloorSummary {
         StillGrowing {
             base_shear: self.shear_force.is_last,
             floors: beyond(&last.computed, &last.velocity, &self.floor_displacement),
-            storeys: beyond(&last.drift(), &drift_of(&last.velocity), &self.max_drift),
+            storeys: beyond(&last.drift(), &last.drift_velocity(), &self.max_drift),
         }
     }
 

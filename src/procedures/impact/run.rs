@@ -78,7 +78,12 @@ pub(crate) fn strike(
     let Setting { input, .. } = setting;
     let summary = match setting.frame() {
         None => StruckSummary::new(input),
-        Some(frame) => StruckSummary::of_frame(input, frame.order(), session.base_shear_noise()),
+        Some(frame) => StruckSummary::of_frame(
+            input,
+            frame.order(),
+            session.base_shear_noise(),
+            &session.element_noise(),
+        ),
     };
     let kept = match session.keep {
         Keep::Results => 0,
@@ -113,9 +118,9 @@ pub(crate) fn strike(
         observe(impact, plan.until, &input.law, session);
         let floors = summary.as_ref().and_then(StruckSummary::floors);
         if let (Until::Drift(limit), Some(floors)) = (plan.until, floors)
-            && let Some(storey) = drifted_to(&floors.drift, limit)
+            && let Some(member) = drifted_to(&floors.drift, limit)
         {
-            observe_drift(storey, limit, session);
+            observe_drift(member, limit, session);
         }
     }
     let mut results = results(summary.as_ref(), &tracking, &history);
@@ -373,7 +378,9 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         };
         self.steps.push(step);
         let gravity_force = self.solver.gravity_force(V::view_of(&reading.displacement));
-        self.summary.moved_to(struck, reading, &gravity_force, time);
+        let elements = &self.solver.structure().elements;
+        self.summary
+            .moved_to(struck, reading, elements, &gravity_force, time);
         if let Some(last) = self.floors.last() {
             let floors = last.floors.cut_off(
                 time,
@@ -381,7 +388,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
                 &reading.displacement,
                 &reading.force,
                 gravity_force,
-                &self.solver.structure().elements,
+                elements,
             );
             let storey_energy = last.storey_energy.clone();
             self.floors.push(FloorStep {

@@ -1,11 +1,12 @@
 //! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
 
 use super::figures;
+use super::figures::charts::{entries_of, members_of};
 use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
 use crate::procedures::stepping::tracking::frame_delay;
 use psd_plan::procedures::shake::block as schema;
-use psd_plan::record::ShakeHistory;
+use psd_plan::record::{Floors as _, ShakeHistory};
 use psd_plan::{Dependence, Plan, Shake};
 
 pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
@@ -22,6 +23,7 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
         headline: vec![
             schema::MAX_DRIFT.name,
             schema::MAX_BASE_SHEAR.name,
+            schema::MAX_ELEMENT_FORCE.name,
             schema::FINAL_DRIFT.name,
             schema::MAX_DISPLACEMENT.name,
         ],
@@ -36,6 +38,7 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
 
 pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
     let ends = history.steps.first().zip(history.steps.last());
+    let elements = ends.is_some_and(|(first, _)| first.has_elements());
     Recorded {
         lists_are_tabled: true,
         time_spans: ends.map(|(first, last)| {
@@ -45,7 +48,8 @@ pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
             )
         }),
         budgeted: stepping::report::FRAME_BUDGET,
-        entries: "floor",
+        entries: entries_of(elements),
+        members: members_of(elements),
         uncertainty: stepping::report::UNCERTAINTY,
         ..Recorded::default()
     }

@@ -1,12 +1,12 @@
 //! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
 //! energy. In: a plan and a record. Out: blocks.
 
+use super::results::reached;
 use crate::procedures::stepping::energy;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::{actuators, budget_table, tracking};
 use crate::report::{Run, number};
-use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::Assemblies;
 use psd_physics::structure::{SymmetricBand, storeys_of, widen};
 use psd_plan::procedures::shake::block as schema;
@@ -45,21 +45,25 @@ pub(crate) fn shaken(
             frame,
             schema::MAX_DISPLACEMENT,
         ));
-        body.extend(element_table(&history.steps));
-        body.extend(noise_note(run));
+        body.extend(element_table(procedure, &history.steps));
+        body.extend(noise_note(run, &history.steps));
         body.extend(tracking::table(procedure, frame));
         body.push(energy_balance(history));
     }
 }
 
 /// Why the result of the base shear is smaller than the largest reading of the table; None without noise.
-pub(crate) fn noise_note(run: &Run<'_>) -> Option<Block> {
+pub(crate) fn noise_note<S: Floors>(run: &Run<'_>, steps: &[S]) -> Option<Block> {
     let noise = match &run.plan.rig.link {
         Link::Virtual(link) => link.noise,
         Link::Real(link) => link.readings.noise,
     };
-    (noise > 0.0)
-        .then(|| Block::note("Max base shear is the largest reading minus its part due to noise."))
+    let note = if steps.last().is_some_and(S::has_elements) {
+        "Max base shear and the peak forces are the largest readings minus their part due to noise."
+    } else {
+        "Max base shear is the largest reading minus its part due to noise."
+    };
+    (noise > 0.0).then(|| Block::note(note))
 }
 
 /// The integration of the frame, and the ground motion on it.
@@ -88,14 +92,17 @@ fn integration(
         shake.stepping.mode,
     ));
     sentences.extend(tracking::sentence(procedure));
-    sentences.extend(shake.until.map(|drift| {
-        let drift = number::stated(drift, Dimension::LENGTH);
-        match history.drift_reached {
-            Some(storey) => format!(
-                "The run ended when storey {} reached a drift of {drift}, before its duration.",
-                storey + 1
-            ),
-            None => format!("A drift of {drift} would have ended the run; no storey reached it."),
+    let elements = history.steps.first().is_some_and(Floors::has_elements);
+    sentences.extend(shake.until.map(|limit| {
+        if let Some(member) = history.drift_reached {
+            let reached = reached(elements, member, limit);
+            return format!("The run ended when {reached}, before its duration.");
+        }
+        let limit = number::stated(limit, Dimension::LENGTH);
+        if elements {
+            format!("A deformation of {limit} would have ended the run; no element reached it.")
+        } else {
+            format!("A drift of {limit} would have ended the run; no storey reached it.")
         }
     }));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
@@ -226,30 +233,18 @@ pub(crate) fn storey_table<S: Floors>(
             .fold(0.0, |largest: f64, value| largest.max(value.abs()))
     };
     let drift = procedure.list(schema::MAX_DRIFT.name).unwrap_or_default();
-    let cell = |kind: ResultKind, storey: usize| {
-        procedure
-            .result(kind.name)
-            .map_or_else(|| "—".into(), |result| entry(result, storey))
-    };
-    let with_u = |title: &str, kind: ResultKind| {
-        let known = procedure
-            .result(kind.name)
-            .is_some_and(|result| !result.contributions.is_empty());
-        Column::numbers(if known {
-            format!("{title} (u)")
-        } else {
-            title.to_owned()
-        })
-    };
+    let cell = |kind: ResultKind, storey: usize| cell(procedure, kind, storey);
+    let with_u = |title: &str, kind: ResultKind| with_u(procedure, title, kind);
     // A frame of matrices with elements is no stack of storeys: its elements have a table.
     if steps.last().is_some_and(S::has_elements) {
         let row = |degree: usize| vec![(degree + 1).to_string().into(), cell(displacement, degree)];
+        let degrees = steps.last().map_or(0, |step| step.computed().len());
         return Block::Table(Table {
             columns: vec![
                 Column::words("Degree of freedom", 1),
                 with_u("Peak displacement", displacement),
             ],
-            rows: (0..shear.len()).map(row).collect(),
+            rows: (0..degrees).map(row).collect(),
         });
     }
     let mut columns = vec![
@@ -295,38 +290,46 @@ pub(crate) fn storey_table<S: Floors>(
 }
 
 /// One row an element of a frame of matrices; None without elements.
-pub(crate) fn element_table<S: Floors>(steps: &[S]) -> Option<Block> {
-    let last = steps.last()?.elements();
-    let read = |of: fn(&ElementReading) -> f64| {
-        move |step: &S| -> Vec<f64> { step.elements().iter().map(of).collect() }
-    };
-    let deformation = largest(steps, read(|element| element.deformation));
-    let force = largest(steps, read(|element| element.force));
-    let whole = |values: &[f64]| {
-        values
-            .iter()
-            .fold(0.0, |most: f64, value| most.max(value.abs()))
-    };
-    let row = |element: usize| -> Vec<Text> {
-        let moved = |value: f64| number::text_beside(value, whole(&deformation), Dimension::LENGTH);
-        vec![
-            (element + 1).to_string().into(),
-            moved(deformation[element]).into(),
-            moved(last[element].deformation).into(),
-            number::text_beside(force[element], whole(&force), Dimension::FORCE).into(),
-        ]
-    };
-    let columns = [
-        "Element",
-        "Peak deformation",
-        "Final deformation",
-        "Peak force",
+pub(crate) fn element_table<S: Floors>(procedure: &ProcedureRecord, steps: &[S]) -> Option<Block> {
+    let elements = steps.last()?.elements().len();
+    let results = [
+        ("Peak deformation", schema::MAX_DRIFT),
+        ("Final deformation", schema::FINAL_DRIFT),
+        ("Peak force", schema::MAX_ELEMENT_FORCE),
     ];
-    (!last.is_empty()).then(|| {
+    let row = |element: usize| {
+        let cells = results.map(|(_, kind)| cell(procedure, kind, element));
+        std::iter::once((element + 1).to_string().into())
+            .chain(cells)
+            .collect()
+    };
+    let columns = results.map(|(title, kind)| with_u(procedure, title, kind));
+    (elements > 0).then(|| {
         Block::Table(Table {
-            columns: columns.map(Column::numbers).to_vec(),
-            rows: (0..last.len()).map(row).collect(),
+            columns: std::iter::once(Column::words("Element", 1))
+                .chain(columns)
+                .collect(),
+            rows: (0..elements).map(row).collect(),
         })
+    })
+}
+
+/// An entry of a result, or a dash without it.
+fn cell(procedure: &ProcedureRecord, kind: ResultKind, index: usize) -> Text {
+    procedure
+        .result(kind.name)
+        .map_or_else(|| "—".into(), |result| entry(result, index))
+}
+
+/// A column of a result, whose title says whether its standard uncertainty is beside it.
+fn with_u(procedure: &ProcedureRecord, title: &str, kind: ResultKind) -> Column {
+    let known = procedure
+        .result(kind.name)
+        .is_some_and(|result| !result.contributions.is_empty());
+    Column::numbers(if known {
+        format!("{title} (u)")
+    } else {
+        title.to_owned()
     })
 }
 

@@ -5,7 +5,9 @@ use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use psd_physics::integrator::state::FrameState;
 use psd_physics::statistics::noisy_largest::NoisyLargest;
-use psd_physics::structure::{Modes, drifts, widen};
+use psd_physics::structure::elements::{ElementReading, member_drifts};
+use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::{Modes, widen};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::NamedResult;
 use psd_plan::schema::ResultKind;
@@ -17,6 +19,8 @@ pub(crate) struct ShakeSummary {
     max_displacement: Vec<f64>,
     max_drift: Vec<f64>,
     drift: Vec<f64>,
+    /// Of each element of a frame of matrices.
+    element_force: Vec<NoisyLargest>,
     base_shear: NoisyLargest,
     /// Largest input or kinetic energy \[J\].
     largest_energy: f64,
@@ -25,13 +29,18 @@ pub(crate) struct ShakeSummary {
 }
 
 impl ShakeSummary {
-    /// `noise`: standard deviation of the measured base shear \[N\].
-    pub(crate) fn new(floors: usize, noise: f64) -> Self {
-        let nothing = vec![0.0; floors];
+    /// `noise`: standard deviation of the measured base shear \[N\]; `of_elements`: of the measured force of each element.
+    pub(crate) fn new(floors: usize, noise: f64, of_elements: &[f64]) -> Self {
+        let members = if of_elements.is_empty() {
+            floors
+        } else {
+            of_elements.len()
+        };
         Self {
-            max_displacement: nothing.clone(),
-            max_drift: nothing.clone(),
-            drift: nothing,
+            max_displacement: vec![0.0; floors],
+            max_drift: vec![0.0; members],
+            drift: vec![0.0; members],
+            element_force: NoisyLargest::of_each(of_elements),
             base_shear: NoisyLargest::new(noise),
             largest_energy: 0.0,
             energy_error: 0.0,
@@ -41,7 +50,8 @@ impl ShakeSummary {
 
     /// Adds the end of a step.
     pub(crate) fn push(&mut self, state: &FrameState) {
-        self.widen(&state.displacement, state.base_shear());
+        state.drifts(&mut self.drift);
+        self.widen(&state.displacement, &state.elements, state.base_shear());
         let e = &state.energies;
         self.largest_energy = self
             .largest_energy
@@ -55,15 +65,27 @@ impl ShakeSummary {
         self.steps = state.step;
     }
 
-    /// Adds displacements of the floors \[m\] and the base shear \[N\], at the end of a step or on the way to a target that was not reached.
-    pub(crate) fn widen(&mut self, displacement: &[f64], base_shear: f64) {
-        drifts(displacement, &mut self.drift);
+    /// Adds displacements of the floors \[m\] on the way to a target that was not reached, the elements there and the base shear \[N\].
+    pub(crate) fn cut_off(
+        &mut self,
+        displacement: &[f64],
+        elements: &[ElementReading],
+        base_shear: f64,
+    ) {
+        member_drifts(displacement, elements, &mut self.drift);
+        self.widen(displacement, elements, base_shear);
+    }
+
+    fn widen(&mut self, displacement: &[f64], elements: &[ElementReading], base_shear: f64) {
         widen(&mut self.max_displacement, displacement);
         widen(&mut self.max_drift, &self.drift);
+        for (largest, element) in self.element_force.iter_mut().zip(elements) {
+            largest.push(element.force.abs());
+        }
         self.base_shear.push(base_shear.abs());
     }
 
-    /// Drifts of the storeys at the end of the last step \[m\].
+    /// Drifts of the storeys, or deformations of the elements, at the end of the last step \[m\].
     pub(crate) fn drift(&self) -> &[f64] {
         &self.drift
     }
@@ -79,18 +101,33 @@ impl ShakeSummary {
     }
 }
 
-/// The lowest storey, from 0, whose drift \[m\] ended a run at `limit` \[m\].
+/// The lowest storey, or the first element, from 0, whose drift or deformation \[m\] ended a run at `limit` \[m\].
 pub(crate) fn drifted_to(drifts: &[f64], limit: f64) -> Option<usize> {
     drifts.iter().position(|drift| drift.abs() >= limit)
 }
 
-/// Records that the drift of a storey, from 0, ended the run.
-pub(crate) fn observe_drift(storey: usize, limit: f64, session: &mut Session<'_>) {
-    session.remark(format!(
-        "the run ended when storey {} reached a drift of {}",
-        storey + 1,
-        stated(limit, Dimension::LENGTH)
-    ));
+/// Records that the drift of a storey, or the deformation of an element, from 0, ended the run of this frame.
+pub(crate) fn observe_drift(member: usize, limit: f64, session: &mut Session<'_>) {
+    let elements = session.assemblies().and_then(Assemblies::elements);
+    let reached = reached(elements.is_some(), member, limit);
+    session.remark(format!("the run ended when {reached}"));
+}
+
+/// For example `storey 1 reached a drift of 20 mm`; `member` is from 0.
+pub(crate) fn reached(is_element: bool, member: usize, limit: f64) -> String {
+    let [of, what] = if is_element {
+        ["element", "deformation"]
+    } else {
+        ["storey", "drift"]
+    };
+    let limit = stated(limit, Dimension::LENGTH);
+    format!("{of} {} reached a {what} of {limit}", member + 1)
+}
+
+/// The largest force of each element \[N\]; None without elements, or before the first step.
+pub(crate) fn largest_forces(elements: &[NoisyLargest]) -> Option<Vec<f64>> {
+    let forces: Option<Vec<f64>> = elements.iter().map(NoisyLargest::value).collect();
+    forces.filter(|forces| !forces.is_empty())
 }
 
 /// In the order of the reference; a result that was not reached is missing.
@@ -113,6 +150,8 @@ pub(crate) fn results(
         schema::ENERGY_ERROR.found(summary.map(|summary| summary.energy_error)),
         schema::STEPS.found(steps),
     ];
+    let forces = summary.and_then(|summary| largest_forces(&summary.element_force));
+    results.extend(forces.map(|forces| schema::MAX_ELEMENT_FORCE.found_list(Some(forces))));
     results.extend(followed.of_all());
     results.extend(followed.of_each());
     results

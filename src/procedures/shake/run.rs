@@ -51,16 +51,20 @@ pub(crate) fn perform(
     let mut shaking = Shaking {
         setting: &setting,
         history,
-        summary: ShakeSummary::new(setting.frame.order(), session.base_shear_noise()),
+        summary: ShakeSummary::new(
+            setting.frame.order(),
+            session.base_shear_noise(),
+            &session.element_noise(),
+        ),
         followed: TrackingSummary::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
     let reached = plan
         .until
         .and_then(|limit| Some((limit, drifted_to(shaking.summary.drift(), limit)?)));
-    if let (Some((limit, storey)), None) = (reached, &stop) {
-        shaking.history.drift_reached = Some(storey);
-        observe_drift(storey, limit, session);
+    if let (Some((limit, member)), None) = (reached, &stop) {
+        shaking.history.drift_reached = Some(member);
+        observe_drift(member, limit, session);
     }
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
     let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);

@@ -194,7 +194,9 @@ impl Stepped for Shaken<'_> {
             energies: last.energies,
         };
         self.history.steps.push(step);
-        self.summary.widen(&reading.displacement, base_shear);
+        let elements = &self.solver.state().elements;
+        self.summary
+            .cut_off(&reading.displacement, elements, base_shear);
     }
 
     fn is_struck(&self) -> bool {

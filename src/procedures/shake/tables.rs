@@ -17,8 +17,9 @@ pub(crate) struct FloorRow<'a, S> {
     step: &'a S,
     floors: FloorsAt<'a>,
     floor: usize,
+    /// Of the storey; NaN, and not written, for a frame of matrices with elements.
     drift: f64,
-    /// Net of P-Δ.
+    /// The same, net of P-Δ.
     shear: f64,
     spring_shear: f64,
     /// Command and measured displacement \[m\], and force \[N\] of the axis at the storey on the rig.
@@ -48,9 +49,17 @@ fn rows<'a, F: Floors + 'a, S>(
             }
             None => vec![None; floors.command().len()],
         };
-        let shears = floors.net_shear().into_iter().zip(floors.shear());
-        let storeys = floors.drift().into_iter().zip(shears).enumerate();
-        storeys.map(move |(floor, (drift, (shear, spring_shear)))| FloorRow {
+        let of_storeys = if floors.has_elements() {
+            vec![[f64::NAN; 3]; floors.command().len()]
+        } else {
+            let shears = floors.net_shear().into_iter().zip(floors.shear());
+            let storeys = floors.drift().into_iter().zip(shears);
+            storeys
+                .map(|(drift, (shear, spring_shear))| [drift, shear, spring_shear])
+                .collect()
+        };
+        let storeys = of_storeys.into_iter().enumerate();
+        storeys.map(move |(floor, [drift, shear, spring_shear])| FloorRow {
             step,
             floors: floors.at(),
             floor,
@@ -73,7 +82,8 @@ fn written_steps<'a, S: Floors>(
     written_rows(columns, &rows, scaled)
 }
 
-/// The columns of these rows: those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale.
+/// The columns of these rows: those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale, those of storeys
+/// not for a frame of matrices with elements.
 fn written_rows<'a, S>(
     mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
     rows: &[FloorRow<'a, S>],
@@ -87,8 +97,15 @@ fn written_rows<'a, S>(
     let has_elements = rows
         .first()
         .is_some_and(|row| !row.floors.elements.is_empty());
-    let of_axes = [columns::TRACKING_ENERGY_ERROR, columns::TRACKING_INDICATOR].map(Some);
-    columns.retain(|column| !has_elements || !of_axes.contains(&column.numeric()));
+    let of_storeys = [
+        columns::DRIFT,
+        columns::STOREY_SHEAR,
+        columns::STOREY_ENERGY,
+        columns::TRACKING_ENERGY_ERROR,
+        columns::TRACKING_INDICATOR,
+    ]
+    .map(Some);
+    columns.retain(|column| !has_elements || !of_storeys.contains(&column.numeric()));
     let of_rig = scaled
         .filter(|_| !has_elements)
         .map_or_else(Vec::new, |_| on_the_rig());

@@ -3,9 +3,9 @@
 
 use super::setting::Setting;
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::procedures::stepping;
-use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
+use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there, with_noise};
 use crate::procedures::stepping::setting::Steps;
 use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameError;
@@ -93,10 +93,7 @@ pub(crate) fn propagate(
     let layout = layout_of(&inputs.numbers(&found.between));
     let mut reported = values(&layout, results);
     evaluate.length = reported.len();
-    if let Some(shear) = index_of(&layout, schema::MAX_BASE_SHEAR) {
-        // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
-        reported[shear] = found.between.max_base_shear;
-    }
+    with_noise(&found.between, &layout, &mut reported);
     let sources = uncertainty.sources(
         &[&plan.scale],
         &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)],
@@ -144,6 +141,7 @@ impl ShakeInputs {
             (schema::FINAL_DRIFT, floors.final_drift.clone()),
             (schema::PERIODS, self.periods.clone()),
             (schema::MAX_BASE_SHEAR, vec![floors.max_base_shear]),
+            (schema::MAX_ELEMENT_FORCE, floors.max_element_force.clone()),
         ]
     }
 }

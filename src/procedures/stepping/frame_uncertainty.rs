@@ -4,6 +4,7 @@
 
 use super::setting::FrameSteps;
 use crate::procedures::common::perturbed_inputs::{UncertainRun, out_of_bounds, uncertain_inputs};
+use crate::procedures::common::results::index_of;
 use crate::run::stop::Stop;
 use psd_physics::reintegration::frame::{Floors, FrameRun};
 use psd_physics::reintegration::frame_path::{FramePath, FrameReading};
@@ -294,6 +295,20 @@ impl<'run> FrameUncertainty<'run> {
             substructures,
         );
         path.ok_or_else(|| "nothing was recorded".to_owned())
+    }
+}
+
+/// The largest base shear and forces of elements of the re-run, in place of the reported ones. Those are without the part of noise; the
+/// re-integrated ones have it in finer steps as well.
+pub(crate) fn with_noise(floors: &Floors, layout: &[(&'static str, usize)], reported: &mut [f64]) {
+    let found = [
+        (schema::MAX_BASE_SHEAR, &[floors.max_base_shear][..]),
+        (schema::MAX_ELEMENT_FORCE, &floors.max_element_force),
+    ];
+    for (kind, values) in found {
+        if let Some(first) = index_of(layout, kind) {
+            reported[first..first + values.len()].copy_from_slice(values);
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::procedures::facts::{Facts, Leaves, Recorded, Tests};
 use crate::procedures::shake::figures;
+use crate::procedures::shake::figures::charts::{entries_of, members_of};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::{Specimen, Unload};
 
@@ -46,13 +47,14 @@ pub(crate) fn leaves(unload: &Unload, specimens: &[Option<Specimen>]) -> Leaves<
 pub(crate) fn recorded_frame() -> Recorded {
     Recorded {
         lists_are_tabled: true,
+        entries: entries_of(false),
         ..Recorded::default()
     }
 }
 
 pub(crate) fn recorded_elements() -> Recorded {
     Recorded {
-        entries: "element",
+        members: members_of(true),
         ..recorded_frame()
     }
 }

@@ -1,7 +1,6 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
-use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::{Damping, widen};
 use psd_plan::record::{Floors, Modes, ShakeHistory};
@@ -169,10 +168,6 @@ pub fn steps(
 pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     if steps.last().is_some_and(F::has_elements) {
-        let of = |read: fn(&ElementReading) -> f64, dimension| {
-            let read = move |step: &F| step.elements().iter().map(read).collect();
-            peaks(steps, read, dimension)
-        };
         return vec![
             row(
                 "largest displacement, row by row",
@@ -180,11 +175,11 @@ pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
             ),
             row(
                 "largest deformation, element by element",
-                of(|element| element.deformation, Dimension::LENGTH),
+                peaks(steps, Floors::drift, Dimension::LENGTH),
             ),
             row(
                 "largest force, element by element",
-                of(|element| element.force, Dimension::FORCE),
+                peaks(steps, Floors::shear, Dimension::FORCE),
             ),
         ];
     }

@@ -592,27 +592,16 @@ impl<'a> Checker<'a> {
         let block = self.procedure(reference.procedure)?;
         let kind = self.scope.blocks[block].kind;
         // A condition on an impact reads the results of that impact.
-        let of_storey = [
-            Some(kind),
-            Some(schema::block(Kind::Procedure(ProcedureBlock::Impact))),
-        ]
-        .into_iter()
-        .flatten();
-        let mut of_storey = of_storey
-            .filter_map(|kind| kind.result(reference.name))
-            .take(1)
-            .map(|result| result.of_storey);
-        if kind.kind != Kind::Procedure(ProcedureBlock::Shake) && !of_storey.next().unwrap_or(false)
-        {
+        let impact = schema::block(Kind::Procedure(ProcedureBlock::Impact));
+        let result = kind
+            .result(reference.name)
+            .or_else(|| impact.result(reference.name))?;
+        if kind.kind != Kind::Procedure(ProcedureBlock::Shake) && !result.of_storey {
             return None;
         }
         let specimen = self.tested(block)?;
         let frame = frame::frame(self, specimen)?;
-        let of_axes = schema::procedures::tracking::OF_EACH_AXIS
-            .iter()
-            .any(|list| list.name == reference.name);
-        let unloads = kind.kind == Kind::Procedure(ProcedureBlock::Unload);
-        Some(if (of_axes || unloads) && !frame.elements.is_empty() {
+        Some(if result.of_each_member && !frame.elements.is_empty() {
             frame.elements.len()
         } else {
             frame.degrees_of_freedom()

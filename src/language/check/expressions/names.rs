@@ -201,6 +201,17 @@ struct ResultOfFloors<'a> {
 }
 
 #[derive(Violation)]
+#[violation(E641, "`{result}` exists only for a frame of matrices with `elements`")]
+#[help("read `max_base_shear`, or add `elements` to the specimen")]
+struct ResultOfElements<'a> {
+    result: &'a str,
+    #[label("not a result here")]
+    at: Span,
+    #[label("its frame has no elements")]
+    head: Span,
+}
+
+#[derive(Violation)]
 #[violation(E641, "`{result}` exists only for the unloading of a frame")]
 #[help("read `residual_displacement` and `residual_force`")]
 struct ResultOfAFrame<'a> {
@@ -589,9 +600,19 @@ impl<'a> Checker<'a> {
                 .diagnostic();
                 return self.fail(diagnostic);
             }
+            let has_elements = self.tests_elements(block);
+            if result.of_elements && has_elements == Some(false) {
+                let diagnostic = ResultOfElements {
+                    result: result.name,
+                    at: name.span,
+                    head: declared.block.head,
+                }
+                .diagnostic();
+                return self.fail(diagnostic);
+            }
             if unloads
                 && result.name == unload::FLOOR_DISPLACEMENT.name
-                && self.tests_elements(block)
+                && has_elements == Some(true)
             {
                 let diagnostic = ResultOfFloors {
                     result: result.name,
@@ -704,10 +725,11 @@ impl<'a> Checker<'a> {
             .is_some_and(|specimen| frame::is_frame(self, specimen))
     }
 
-    fn tests_elements(&mut self, block: usize) -> bool {
-        self.tested(block)
-            .and_then(|specimen| frame::frame(self, specimen))
-            .is_some_and(|frame| !frame.elements.is_empty())
+    /// Whether the frame that a block tests has elements; None without a frame.
+    fn tests_elements(&mut self, block: usize) -> Option<bool> {
+        let specimen = self.tested(block)?;
+        let frame = frame::frame(self, specimen)?;
+        Some(!frame.elements.is_empty())
     }
 
     /// Checks that every result that a value reads may be read in this context.

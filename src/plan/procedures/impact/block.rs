@@ -1,6 +1,7 @@
 //! `impact`: its block and its results.
 
 use crate::ProcedureBlock;
+use crate::procedures::shake::block as shake;
 use crate::schema::procedures::{SPECIMEN, STIFFNESS, tracking};
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
@@ -220,23 +221,26 @@ pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
 pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
-    "peak absolute drift of each storey",
+    "peak absolute drift of each storey, or deformation of each element",
 )
 .within(Possible::NotNegative)
+.of_each_member()
 .of_storey();
 
 pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
-    "drift of each storey at the last step of the run",
+    "drift of each storey, or deformation of each element, at the last step of the run",
 )
+.of_each_member()
 .of_storey();
 
 pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",
     Dimension::ENERGY,
-    "work of each storey shear over its drift, in the run",
+    "work of each storey shear over its drift, or of the force of each element over its deformation, in the run",
 )
+.of_each_member()
 .of_storey();
 
 pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
@@ -245,6 +249,8 @@ pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "peak absolute base shear, net of P-Δ, minus the part due to noise",
 )
 .of_storey();
+
+pub const MAX_ELEMENT_FORCE: ResultKind = shake::MAX_ELEMENT_FORCE.of_storey();
 
 pub const PERIODS: ResultKind =
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first")
@@ -283,6 +289,7 @@ pub const RESULTS: &[ResultKind] = &[
     STOREY_ENERGY,
     MAX_BASE_SHEAR,
     PERIODS,
+    MAX_ELEMENT_FORCE,
     tracking::FLOOR_TRACKING_ENERGY_ERROR.of_storey(),
     tracking::FLOOR_TRACKING_INDICATOR.of_storey(),
     tracking::FLOOR_NRMS_ERROR.of_storey(),

@@ -16,15 +16,17 @@ pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
 pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
-    "peak absolute drift of each storey",
+    "peak absolute drift of each storey, or deformation of each element",
 )
-.within(Possible::NotNegative);
+.within(Possible::NotNegative)
+.of_each_member();
 
 pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
-    "drift of each storey at the last step of the run",
-);
+    "drift of each storey, or deformation of each element, at the last step of the run",
+)
+.of_each_member();
 
 pub const PERIODS: ResultKind =
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first")
@@ -35,6 +37,15 @@ pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     Dimension::FORCE,
     "peak absolute base shear, net of P-Δ, minus the part due to noise",
 );
+
+pub const MAX_ELEMENT_FORCE: ResultKind = ResultKind::measured_list(
+    "max_element_force",
+    Dimension::FORCE,
+    "peak absolute force of each element, minus the part due to noise; only with `elements`",
+)
+.within(Possible::NotNegative)
+.of_each_member()
+.of_elements();
 
 pub const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
@@ -54,6 +65,7 @@ pub const RESULTS: &[ResultKind] = &[
     MAX_BASE_SHEAR,
     ENERGY_ERROR,
     STEPS,
+    MAX_ELEMENT_FORCE,
     tracking::TRACKING_ENERGY_ERROR,
     tracking::TRACKING_INDICATOR,
     tracking::NRMS_ERROR,

@@ -30,14 +30,16 @@ pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "drift of each unloaded storey, or deformation of each element",
 )
-.of_storey();
+.of_storey()
+.of_each_member();
 
 pub const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
     "residual_shear",
     Dimension::FORCE,
     "remaining shear of each storey, or force of each element",
 )
-.of_storey();
+.of_storey()
+.of_each_member();
 
 /// What it leaves, in the order of the tables and of `summary.json`.
 pub const RESULTS: &[ResultKind] = &[

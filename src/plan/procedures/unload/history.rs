@@ -31,10 +31,8 @@ impl UnloadStep {
 
 fn element_readings(target: &[f64], deformation: &[f64], force: &[f64]) -> Vec<ElementReading> {
     let read = target.iter().zip(deformation).zip(force);
-    read.map(|((target, deformation), force)| ElementReading {
-        target: *target,
-        deformation: *deformation,
-        force: *force,
+    read.map(|((target, deformation), force)| {
+        ElementReading::at_rest(*target, [*deformation, *force])
     })
     .collect()
 }

@@ -78,15 +78,31 @@ pub trait Floors {
         self.at().tracking
     }
 
-    /// Drift of each storey \[m\], from the computed displacements.
+    /// Drift of each storey, or deformation of each element \[m\], from the computed displacements.
     #[must_use]
     fn drift(&self) -> Vec<f64> {
+        if self.has_elements() {
+            return self.elements().iter().map(|read| read.computed).collect();
+        }
         drift_of(self.computed())
     }
 
-    /// Shear of each storey \[N\]: the forces of the floors it carries; the first is the base shear.
+    /// The rate of each \[m/s\].
+    #[must_use]
+    fn drift_velocity(&self) -> Vec<f64> {
+        if self.has_elements() {
+            return self.elements().iter().map(|read| read.velocity).collect();
+        }
+        drift_of(self.at().velocity)
+    }
+
+    /// Shear of each storey \[N\]: the forces of the floors it carries; the first is the base shear. Of a frame of matrices, the force of
+    /// each element.
     #[must_use]
     fn shear(&self) -> Vec<f64> {
+        if self.has_elements() {
+            return self.elements().iter().map(|read| read.force).collect();
+        }
         shear_of(self.restoring_force())
     }
 
@@ -229,7 +245,8 @@ impl Floors for FloorMotion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorStep {
     pub floors: FloorMotion,
-    /// ∫ shear d(storey drift) of each storey up to this step \[J\]; their sum is the energy of the restoring forces.
+    /// ∫ shear d(storey drift) of each storey up to this step \[J\]; their sum is the energy of the restoring forces. Of a frame of matrices,
+    /// ∫ force d(deformation) of each element.
     pub storey_energy: Vec<f64>,
 }
 
@@ -257,7 +274,7 @@ pub struct StruckFrame {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StillGrowing {
     pub base_shear: bool,
-    /// The floors, from 0, and the storeys that were moving beyond their largest displacement and drift.
+    /// The floors, from 0, and the storeys or elements that were moving beyond their largest displacement and drift.
     pub floors: Vec<usize>,
     pub storeys: Vec<usize>,
 }

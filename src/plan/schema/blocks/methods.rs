@@ -44,7 +44,7 @@ pub const REACHED: Field = Field::quantity(
 pub const DRIFT_REACHED: Variant = Variant::with(
     "drift",
     &[REACHED],
-    "the drift of a storey of a frame has reached this value",
+    "the drift of a storey of a frame, or the deformation of an element, has reached this value",
 );
 
 pub const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];

@@ -24,11 +24,7 @@ pub(crate) fn chart(
         return None;
     }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
-    let chosen = if shake::figures::charts::is_chosen(&frame.floors) {
-        "; not all are drawn"
-    } else {
-        ""
-    };
+    let chosen = shake::figures::charts::chosen_members(&frame.floors);
     let struck = frame.struck + 1;
     Some(match figure.kind {
         FigureKind::Modes => (
@@ -40,7 +36,8 @@ pub(crate) fn chart(
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
             let caption = format!(
-                "{name}: displacement of each floor, and of the striker while near floor {struck}, against simulated time{chosen}."
+                "{name}: displacement of each floor, and of the striker while near floor {struck}, against simulated time{}.",
+                shake::figures::charts::chosen_floors(&frame.floors)
             );
             (chart, caption)
         }
@@ -49,7 +46,7 @@ pub(crate) fn chart(
                 history,
                 shake::figures::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
-            format!("{name}: drift of each storey against simulated time{chosen}."),
+            shake::figures::drifts(run, name, chosen),
         ),
         FigureKind::Hysteresis => (
             shake::figures::charts::hysteresis(&frame.floors),

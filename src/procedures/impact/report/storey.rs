@@ -60,8 +60,8 @@ pub(crate) fn report(
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
-    body.extend(shake::report::element_table(&struck.floors));
-    body.extend(shake::report::noise_note(run));
+    body.extend(shake::report::element_table(procedure, &struck.floors));
+    body.extend(shake::report::noise_note(run, &struck.floors));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure, frame));
     energy_balance(contact_work(run, index), history, body);

@@ -8,7 +8,7 @@ use super::{counted, give_resolved, same, striker_sources};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
 use crate::procedures::stepping;
-use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
+use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there, with_noise};
 use crate::procedures::stepping::setting::FrameSteps;
 use crate::run::stop::Stop;
 use psd_physics::impact::ImpactInput;
@@ -90,10 +90,7 @@ pub(crate) fn propagate(
     ));
     let mut reported = values(&layout, results);
     evaluate.length = reported.len();
-    if let Some(shear) = index_of(&layout, schema::MAX_BASE_SHEAR) {
-        // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
-        reported[shear] = found.floors.between.max_base_shear;
-    }
+    with_noise(&found.floors.between, &layout, &mut reported);
     let stated = striker_sources(uncertainty.run.whole, plan.striker);
     let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated)?;
     let mut contributions = uncertainty.run.contributions(
@@ -171,6 +168,7 @@ impl StoreyInputs {
             (schema::MAX_DRIFT, floors.max_drift.clone()),
             (schema::FINAL_DRIFT, floors.final_drift.clone()),
             (schema::STOREY_ENERGY, storey_energy.clone()),
+            (schema::MAX_ELEMENT_FORCE, floors.max_element_force.clone()),
             (schema::PERIODS, self.periods.clone()),
             counted(values),
         ]);

@@ -28,66 +28,68 @@ pub(crate) fn displacement<S: Floors>(steps: &[S]) -> Chart {
     each_floor(
         steps,
         Quantity::of("Displacement", Dimension::LENGTH),
-        "floor",
+        entries_of(has_elements(steps)),
         |step| step.computed().to_vec(),
     )
 }
 
+/// Drift of each storey, or deformation of each element.
 pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
-    let mut chart = each_floor(
-        steps,
-        Quantity::of("Drift", Dimension::LENGTH),
-        "storey",
-        S::drift,
-    );
+    let (of, [name, _]) = of_members(has_elements(steps));
+    let mut chart = each_floor(steps, Quantity::of(name, Dimension::LENGTH), of, S::drift);
     chart.references = limits.to_vec();
     chart
 }
 
-/// Storey shear against storey drift: the area of a loop is the absorbed energy. Elements of a frame of matrices: force against deformation.
+/// Storey shear against storey drift, or force of each element against its deformation: the area of a loop is the absorbed energy.
 pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
-    if has_elements(steps) {
-        return loops_of_elements(steps, |step| {
-            let elements = step.elements().iter();
-            elements
-                .map(|read| (read.deformation, read.force))
-                .collect()
-        });
-    }
-    let curves = each(steps, |step| {
+    loops(steps, has_elements(steps), |step| {
         step.drift().into_iter().zip(step.shear()).collect()
-    });
-    let curves = curves
-        .into_iter()
-        .enumerate()
-        .map(|(curve, (storey, points))| Series {
-            label: format!("storey {}", storey + 1),
-            points,
-            style: retraced(curve),
-        });
-    Chart::of(
-        Quantity::along("Drift", Dimension::LENGTH),
-        Quantity::of("Storey shear", Dimension::FORCE),
-        curves.collect(),
-    )
+    })
 }
 
-/// Force against deformation of each element.
-pub(crate) fn loops_of_elements<S: Floors>(
+/// The loop of each storey or element.
+pub(crate) fn loops<S: Floors>(
     steps: &[S],
+    is_of_elements: bool,
     read: impl Fn(&S) -> Vec<(f64, f64)>,
 ) -> Chart {
+    let (of, [along, force]) = of_members(is_of_elements);
     let curves = each(steps, read).into_iter().enumerate();
-    let curves = curves.map(|(curve, (element, points))| Series {
-        label: format!("element {}", element + 1),
+    let curves = curves.map(|(curve, (member, points))| Series {
+        label: format!("{of} {}", member + 1),
         points,
         style: retraced(curve),
     });
     Chart::of(
-        Quantity::along("Deformation", Dimension::LENGTH),
-        Quantity::of("Force", Dimension::FORCE),
+        Quantity::along(along, Dimension::LENGTH),
+        Quantity::of(force, Dimension::FORCE),
         curves.collect(),
     )
+}
+
+/// The name of the entries of a list of displacements: of a frame of matrices with elements, they are no floors.
+pub(crate) const fn entries_of(has_elements: bool) -> &'static str {
+    if has_elements {
+        "degree of freedom"
+    } else {
+        "floor"
+    }
+}
+
+/// A storey, or an element of a frame of matrices.
+pub(crate) const fn members_of(has_elements: bool) -> &'static str {
+    if has_elements { "element" } else { "storey" }
+}
+
+/// A storey or an element, and the names of its drift or deformation and of its force.
+const fn of_members(is_of_elements: bool) -> (&'static str, [&'static str; 2]) {
+    let names = if is_of_elements {
+        ["Deformation", "Force"]
+    } else {
+        ["Drift", "Storey shear"]
+    };
+    (members_of(is_of_elements), names)
 }
 
 /// Whether the steps are those of a frame of matrices with elements.
@@ -232,13 +234,22 @@ pub(crate) fn of_size(limits: Vec<Reference>) -> Vec<Reference> {
     limits.into_iter().flat_map(both).collect()
 }
 
-/// Whether not every floor is drawn, for the caption.
-pub(crate) fn is_chosen<S: Floors>(steps: &[S]) -> bool {
-    floors(steps) > MOST_CURVES
+/// For the caption of a chart of floors: whether not every floor is drawn.
+pub(crate) fn chosen_floors<S: Floors>(steps: &[S]) -> &'static str {
+    chosen(steps.first().map_or(0, |step| step.computed().len()))
 }
 
-fn floors<S: Floors>(steps: &[S]) -> usize {
-    steps.first().map_or(0, |step| step.computed().len())
+/// The same of a chart of storeys or elements.
+pub(crate) fn chosen_members<S: Floors>(steps: &[S]) -> &'static str {
+    chosen(steps.first().map_or(0, |step| step.drift().len()))
+}
+
+const fn chosen(curves: usize) -> &'static str {
+    if curves > MOST_CURVES {
+        "; not all are drawn"
+    } else {
+        ""
+    }
 }
 
 /// The floors that are drawn: all, or as many as can be distinguished, evenly from the lowest to the highest.

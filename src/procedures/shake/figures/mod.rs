@@ -9,7 +9,7 @@ use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
 use crate::report::wording::specimen::{measured, weights};
 use psd_plan::procedures::shake::block as schema;
-use psd_plan::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
+use psd_plan::record::{Floors, ShakeHistory, ShakeStep, UnloadStep};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
@@ -48,11 +48,7 @@ pub(crate) fn chart(
         return None;
     }
     let limits = |result: ResultKind| charts::of_size(limits_on(run, figure.procedure, result));
-    let chosen = if charts::is_chosen(&history.steps) {
-        "; not all are drawn"
-    } else {
-        ""
-    };
+    let chosen = charts::chosen_members(&history.steps);
     Some(match figure.kind {
         FigureKind::Modes => (
             charts::modes(history.modes.as_ref()?),
@@ -65,12 +61,14 @@ pub(crate) fn chart(
         FigureKind::Displacement => (
             charts::displacement(&history.steps),
             format!(
-                "{name}: displacement of each floor relative to the ground against simulated time{chosen}."
+                "{name}: displacement of each {} relative to the ground against simulated time{}.",
+                charts::entries_of(has_elements(run)),
+                charts::chosen_floors(&history.steps)
             ),
         ),
         FigureKind::Drift => (
             charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
-            format!("{name}: drift of each storey against simulated time{chosen}."),
+            drifts(run, name, chosen),
         ),
         FigureKind::Hysteresis => (charts::hysteresis(&history.steps), loops(run, name, chosen)),
         FigureKind::BaseShear => (
@@ -126,7 +124,7 @@ pub(crate) fn unloaded_elements(
                 .collect()
         };
         (
-            charts::loops_of_elements(steps, read),
+            charts::loops(steps, true, read),
             format!(
                 "{name}: {force} against its deformation, from the start of the unloading to zero force."
             ),
@@ -134,13 +132,28 @@ pub(crate) fn unloaded_elements(
     })
 }
 
+/// The caption of the drifts.
+pub(crate) fn drifts(run: &Run<'_>, name: &str, chosen: &str) -> String {
+    let drift = if has_elements(run) {
+        "deformation of each element"
+    } else {
+        "drift of each storey"
+    };
+    format!("{name}: {drift} against simulated time{chosen}.")
+}
+
+/// Whether the rig tests a frame of matrices with elements.
+fn has_elements(run: &Run<'_>) -> bool {
+    let frame = run.plan.frame_on_the_rig();
+    frame.is_some_and(|frame| !frame.elements.is_empty())
+}
+
 /// The caption of the loops.
 pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let frame = run.plan.frame_on_the_rig();
-    if frame.is_some_and(|frame| !frame.elements.is_empty()) {
-        let force = measured("force of each element", frame);
+    if has_elements(run) {
+        let force = measured("force of each element", run.plan.frame_on_the_rig());
         return format!(
-            "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element."
+            "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element{chosen}."
         );
     }
     format!(
@@ -166,8 +179,7 @@ pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
 
 /// The caption of the tracking of a frame.
 pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let frame = run.plan.frame_on_the_rig();
-    let of = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+    let of = if has_elements(run) {
         "element"
     } else {
         "floor"
@@ -181,9 +193,25 @@ pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
 /// The curve of this history on a chart of several; None for a figure that is not shared.
 pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedCurve> {
     let points = points(kind, history)?;
+    let elements = history.steps.first().is_some_and(Floors::has_elements);
     let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
     let (length, force) = (Dimension::LENGTH, Dimension::FORCE);
     let ((x, y), caption) = match kind {
+        FigureKind::Displacement if elements => (
+            over_time("Displacement of the last degree of freedom", length),
+            "displacement of the last degree of freedom against simulated time",
+        ),
+        FigureKind::Drift if elements => (
+            over_time("Deformation of element 1", length),
+            "deformation of element 1 against simulated time",
+        ),
+        FigureKind::Hysteresis if elements => (
+            (
+                Quantity::along("Deformation of element 1", length),
+                Quantity::of("Force of element 1", force),
+            ),
+            "force of element 1 against its deformation",
+        ),
         FigureKind::Displacement => (
             over_time("Displacement of the top floor", length),
             "displacement of the top floor against simulated time",
@@ -215,7 +243,12 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
 
 fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
     let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
-    let gross = |step: &ShakeStep| step.floors.restoring_force.iter().sum();
+    let gross = |step: &ShakeStep| {
+        if step.has_elements() {
+            return lowest(step.shear());
+        }
+        step.floors.restoring_force.iter().sum()
+    };
     Some(match kind {
         FigureKind::Displacement => steps
             .iter()

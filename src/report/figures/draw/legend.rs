@@ -42,7 +42,7 @@ pub(super) fn entries(chart: &Chart) -> Vec<Entry<'_>> {
     let series = chart
         .series
         .iter()
-        .filter(|series| !series.label.is_empty())
+        .filter(|series| !series.label.is_empty() && is_drawn(series))
         .map(Entry::Series);
     let bands = chart
         .bands
@@ -50,6 +50,13 @@ pub(super) fn entries(chart: &Chart) -> Vec<Entry<'_>> {
         .filter(|band| !band.intervals.is_empty())
         .map(|band| Entry::Band(band.label, band.colour));
     series.chain(bands).collect()
+}
+
+/// Whether a series has more than a line without a length, such as that of a computed storey while the rig unloads the others.
+fn is_drawn(series: &Series) -> bool {
+    let mut points = series.points.iter();
+    let first = points.next();
+    series.style.fill || series.style.marker.is_some() || points.any(|point| Some(point) != first)
 }
 
 /// The entries in lines that fit the frame, each with its left end.

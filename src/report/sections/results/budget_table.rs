@@ -175,14 +175,13 @@ fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Bloc
 
 /// The noun for one entry of the list of this name.
 pub(crate) fn entry_kind(result: &str, procedure: &ProcedureRecord) -> &'static str {
-    let entries = procedures::recorded(&procedure.history).entries;
+    let recorded = procedures::recorded(&procedure.history);
+    let of_member = [unload::RESIDUAL_SHEAR, impact::MAX_ELEMENT_FORCE];
     match result {
-        _ if entries == "element" => entries,
         name if name == impact::PERIODS.name => "mode",
-        name if name.contains("drift") || name.starts_with("storey") => "storey",
-        name if name == unload::RESIDUAL_SHEAR.name => "storey",
-        name if name == impact::FLOOR_DISPLACEMENT.name => "floor",
-        _ => entries,
+        name if name.contains("drift") || name.starts_with("storey") => recorded.members,
+        name if of_member.iter().any(|kind| kind.name == name) => recorded.members,
+        _ => recorded.entries,
     }
 }
 

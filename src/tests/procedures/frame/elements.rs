@@ -12,10 +12,14 @@ use crate::tests::uncertainty::frame::{entry, from};
 use psd_physics::structure::Damping;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::widen;
 use psd_plan::formula::Formula::Constant;
-use psd_plan::procedures::shake::block::{FINAL_DRIFT, MAX_BASE_SHEAR};
+use psd_plan::procedures::impact::block::STOREY_ENERGY;
+use psd_plan::procedures::shake::block::{
+    FINAL_DRIFT, MAX_BASE_SHEAR, MAX_DRIFT, MAX_ELEMENT_FORCE,
+};
 use psd_plan::procedures::unload::block::{RESIDUAL_DRIFT, RESIDUAL_SHEAR};
-use psd_plan::record::{FloorMotion, History, Outcome, Record, UnloadStep};
+use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record, UnloadStep};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
     Behaviour, Contact, Element, Frame, Integrator, Link, Mode, Part, Plan, ProcedureKind, Scale,
@@ -113,7 +117,38 @@ fn storeys_move_as_their_matrix_and_elements() {
                 let case = format!("{integrator:?}, {:?}, {parts:?}", model(1.0));
                 same(&elements, &storeys, 0, 1e-12, &case);
                 same_energies(&elements, &storeys, &case);
+                same_results(&elements, &storeys, &case);
             }
+        }
+    }
+}
+
+/// The deformations of the elements are the drifts of the storeys, their forces the shears, their energies those of the storeys.
+fn same_results(elements: &Record, storeys: &Record, case: &str) {
+    let list = |record: &Record, name: &str| {
+        let result = record.procedures[0].result(name);
+        result.map(|result| result.value.values().to_vec())
+    };
+    let mut shears = vec![0.0; 3];
+    for floors in floors(storeys, 0) {
+        widen(&mut shears, &floors.shear());
+    }
+    let of_storeys = [MAX_DRIFT, FINAL_DRIFT, STOREY_ENERGY]
+        .map(|kind| (kind.name, list(storeys, kind.name)))
+        .into_iter()
+        .chain([(MAX_ELEMENT_FORCE.name, Some(shears))]);
+    for (name, wanted) in of_storeys {
+        let found = list(elements, name);
+        assert_eq!(found.is_some(), wanted.is_some(), "{case}: {name}");
+        let (found, wanted) = (found.unwrap_or_default(), wanted.unwrap_or_default());
+        let largest = wanted.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        assert_eq!(found.len(), wanted.len(), "{case}: {name}");
+        for (found, wanted) in found.iter().zip(&wanted) {
+            let off = (found - wanted).abs();
+            assert!(
+                off <= 1e-11 * largest,
+                "{case}: {name} {found} for {wanted}"
+            );
         }
     }
 }
@@ -156,6 +191,7 @@ fn an_impact_on_storeys_is_that_on_their_elements() {
                 let elements = run_unwatched(&as_elements(plan, no));
                 let case = format!("{integrator:?}, floor {floor}, {parts:?}");
                 same(&elements, &storeys, 0, 1e-11, &case);
+                same_results(&elements, &storeys, &case);
             }
         }
     }
@@ -501,6 +537,82 @@ fn the_i_modification_corrects_each_element_in_its_own_coordinates() {
 }
 
 /// The second test begins where the rig is, with K and the computed elements in balance.
+/// The element from the ground to the second degree of freedom of a frame whose rows are no storeys.
+#[test]
+fn the_deformation_of_an_element_ends_the_run() {
+    let parts = [COMPUTED, TESTED, COMPUTED, COMPUTED];
+    let mut plan = bridge(parts, bilinear, Integrator::Explicit);
+    let mut frame = frame(&plan).clone();
+    frame.elements[1].ends = [None, Some(1)];
+    plan.specimens[0].frame = Some(frame);
+    let whole = run_unwatched(&plan);
+    let peaks = |record: &Record| {
+        let result = record.procedures[0].result(MAX_DRIFT.name).unwrap();
+        result.value.values().to_vec()
+    };
+    let limit = 0.5 * peaks(&whole)[1];
+    shake(&mut plan).until = Some(limit);
+    let record = run_unwatched(&plan);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let floors = floors(&record, 0);
+    let (last, before) = floors.split_last().unwrap();
+    let deformed = |floors: &FloorMotion| -> Vec<f64> {
+        let x = &floors.computed;
+        [x[0], x[1], x[1] - x[2], x[0] - x[1]]
+            .map(f64::abs)
+            .to_vec()
+    };
+    let reached = |floors: &FloorMotion| deformed(floors).iter().position(|by| *by >= limit);
+    let element = reached(last).unwrap() + 1;
+    assert!(before.iter().all(|floors| reached(floors).is_none()));
+    let said = format!("element {element} reached a deformation of");
+    assert!(record.events.iter().any(|event| event.text.contains(&said)));
+    let largest = |element: usize| {
+        let each = floors.iter().map(|floors| deformed(floors)[element]);
+        each.fold(0.0, f64::max)
+    };
+    for (element, peak) in peaks(&record).into_iter().enumerate() {
+        assert!(
+            (peak - largest(element)).abs() < 1e-12 * limit,
+            "{element}: {peak}"
+        );
+    }
+}
+
+/// The only element on the ground carries the base shear, with the noise of its load cell.
+#[test]
+fn the_force_of_an_element_has_the_noise_and_the_budget_of_its_cell() {
+    let mut plan = shaken([TESTED, COMPUTED, COMPUTED], bilinear, Integrator::Explicit);
+    let Link::Virtual(link) = &mut plan.rig.link else {
+        panic!()
+    };
+    link.noise = 40.0;
+    plan.rig.calibration.force_uncertainty = 0.01;
+    let mut plan = as_elements(plan, no);
+    let mut frame = frame(&plan).clone();
+    // The noise of the base shear is not that of the first element of the list.
+    frame.elements.swap(0, 1);
+    plan.specimens[0].frame = Some(frame);
+    let record = run_unwatched(&plan);
+    let (shear, of_shear) = entry(&record, MAX_BASE_SHEAR.name, 0);
+    let (force, of_force) = entry(&record, MAX_ELEMENT_FORCE.name, 1);
+    assert!((shear - force).abs() < 1e-9 * shear, "{shear}, {force}");
+    let read = floors(&record, 0)
+        .iter()
+        .map(|floors| floors.elements[1].force.abs())
+        .fold(0.0, f64::max);
+    assert!(
+        force < read - 1.0,
+        "{force} is without noise, {read} with it"
+    );
+    let source = Source::ForceScale(0);
+    let (wanted, found) = (from(&of_shear, source), from(&of_force, source));
+    assert!(
+        (wanted - found).abs() < 1e-9 * wanted.abs() && wanted != 0.0,
+        "{wanted}, {found}"
+    );
+}
+
 #[test]
 fn a_second_test_begins_in_balance() {
     for parts in [[TESTED, COMPUTED, COMPUTED], [COMPUTED, TESTED, COMPUTED]] {
@@ -557,7 +669,11 @@ fn elements_have_the_budget_of_storeys() {
     for own in [Source::ForceScale(0), Source::DisplacementScale(0)] {
         pairs.push((own, own));
     }
-    for (result, count) in [(FINAL_DRIFT.name, 3), (MAX_BASE_SHEAR.name, 1)] {
+    for (result, count) in [
+        (MAX_DRIFT.name, 3),
+        (FINAL_DRIFT.name, 3),
+        (MAX_BASE_SHEAR.name, 1),
+    ] {
         for index in 0..count {
             let [(_, storeys), (_, elements)] =
                 [&storeys, &elements].map(|record| entry(record, result, index));

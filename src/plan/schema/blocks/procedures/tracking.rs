@@ -33,33 +33,29 @@ pub const PEAK_ERROR: ResultKind = ResultKind::new(
 pub const FLOOR_TRACKING_ENERGY_ERROR: ResultKind = ResultKind::list(
     "floor_tracking_energy_error",
     Dimension::NUMBER,
-    "`tracking_energy_error` of each floor's actuator",
+    "`tracking_energy_error` of each floor's or element's actuator",
 )
-.in_percent();
+.in_percent()
+.of_each_member();
 
 pub const FLOOR_TRACKING_INDICATOR: ResultKind = ResultKind::list(
     "floor_tracking_indicator",
     Dimension::AREA,
-    "`tracking_indicator` of each floor's actuator",
-);
+    "`tracking_indicator` of each floor's or element's actuator",
+)
+.of_each_member();
 
 pub const FLOOR_NRMS_ERROR: ResultKind = ResultKind::list(
     "floor_nrms_error",
     Dimension::NUMBER,
-    "`nrms_error` of each floor's actuator",
+    "`nrms_error` of each floor's or element's actuator",
 )
-.in_percent();
+.in_percent()
+.of_each_member();
 
 pub const FLOOR_PEAK_ERROR: ResultKind = ResultKind::list(
     "floor_peak_error",
     Dimension::LENGTH,
-    "`peak_error` of each floor's actuator",
-);
-
-/// The lists above: of each floor, or of each element of a frame of matrices.
-pub const OF_EACH_AXIS: [ResultKind; 4] = [
-    FLOOR_TRACKING_ENERGY_ERROR,
-    FLOOR_TRACKING_INDICATOR,
-    FLOOR_NRMS_ERROR,
-    FLOOR_PEAK_ERROR,
-];
+    "`peak_error` of each floor's or element's actuator",
+)
+.of_each_member();
