@@ -265,14 +265,8 @@ impl<'a> Life<'a> {
         if resumptions > self.resumptions {
             // The run log has the power-up of the rig with which it went on.
             (self.resumptions, self.same_power) = (resumptions, true);
-        }
-        let amendments = recovered
-            .lines
-            .iter()
-            .filter(|line| line.kind == EntryKind::Amend);
-        if amendments.count() as u64 > self.tally.amendments {
-            self.tally.amendments += 1;
             let amended = &self.case.sessions[index].amended;
+            self.tally.amendments += u64::from(!amended.is_empty());
             self.plan = bench::amended(&self.plan, amended);
         }
         self.verified(&recovered, &logged, ended);
