@@ -15,10 +15,12 @@ use psd_rig::{LineStatistics, position_and_force};
 /// The content of a run log.
 #[derive(Clone, Debug)]
 pub struct LoggedRun {
-    /// The header that applies at the end: that of the last amendment, otherwise the first.
+    /// The header that applies at the end: that of the last amendment with which the run went on, otherwise the first.
     pub header: Header,
     /// Text of each file of the header.
     pub texts: Vec<String>,
+    /// An amendment that holds from the next resumption on, and the texts of its files. Without a resumption it has changed nothing.
+    pub(super) amendment: Option<(AmendBody, Vec<String>)>,
     pub rigs: Rigs,
     /// Entries that count, in order: targets, readings, steps, answers, faults, events.
     pub lines: VecDeque<Line>,
@@ -74,6 +76,7 @@ impl LoggedRun {
         let mut logged = Self {
             texts: Vec::new(),
             header: by_these_rules(body(first)?)?,
+            amendment: None,
             rigs: Rigs::default(),
             lines: VecDeque::with_capacity(recovered.lines.len()),
             interruptions: Vec::new(),
@@ -104,7 +107,11 @@ impl LoggedRun {
             }
             EntryKind::Plan => {
                 let part: PlanBody = body(line)?;
-                if part.file >= self.header.files.len() {
+                let (header, texts) = match &mut self.amendment {
+                    Some((amendment, texts)) => (&amendment.header, texts),
+                    None => (&self.header, &mut self.texts),
+                };
+                if part.file >= header.files.len() {
                     let reason = "there is no such file".to_owned();
                     return Err(UnreadableLog::Body {
                         seq: line.seq,
@@ -112,8 +119,8 @@ impl LoggedRun {
                         reason,
                     });
                 }
-                self.texts.resize(self.header.files.len(), String::new());
-                self.texts[part.file].push_str(&part.text);
+                texts.resize(header.files.len(), String::new());
+                texts[part.file].push_str(&part.text);
             }
             EntryKind::Amend => {
                 let amend: AmendBody = body(line)?;
@@ -142,17 +149,9 @@ impl LoggedRun {
         Ok(())
     }
 
-    /// A different header applies from here on; its texts follow.
+    /// A different header applies from the next resumption on; its texts follow.
     pub fn amended(&mut self, amend: AmendBody) {
-        let text = format!(
-            "{} ({}): {}",
-            amend.differences.join("; "),
-            amend.by,
-            amend.reason
-        );
-        self.interrupted(EventKind::Amendment, text);
-        self.header = amend.header;
-        self.texts.clear();
+        self.amendment = Some((amend, Vec::new()));
     }
 
     /// A rig answered; it applies from the next resumption on.
@@ -174,6 +173,16 @@ impl LoggedRun {
         }
         if !resume.target_status.sends_again() {
             self.set_aside = None;
+        }
+        if let Some((amend, texts)) = self.amendment.take() {
+            let text = format!(
+                "{} ({}): {}",
+                amend.differences.join("; "),
+                amend.by,
+                amend.reason
+            );
+            self.interrupted(EventKind::Amendment, text);
+            (self.header, self.texts) = (amend.header, texts);
         }
         self.rigs.applies(resume.from, &self.header);
         self.interrupted(EventKind::Resume, describe(&resume));

@@ -1,14 +1,17 @@
 //! The plan of a case and its rig. In: a case. Out: the plan as psd has it, and the emulator behind its lines, which can differ from it.
 
-use super::case::{Amendment, Case, Devices, Registers};
-use super::fault::Fault;
+use std::ops::Range;
+
+use super::case::{Amendment, Case, Devices, Leg, Registers, Test};
+use super::fault::{Fault, Part};
+use super::frame::duration;
 use super::laws::{Obeys, Witness};
 use crate::tests::testing::elastic_plan;
 use psd_plan::formula::Formula;
 use psd_plan::{
-    Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, ModbusMap, ModbusNumber, Move,
-    Plan, PortPlan, PretestCheck, Procedure, ProcedureKind, ReadingRules, RealLink, SafeState,
-    Settle,
+    AxisPlan, Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, ModbusMap,
+    ModbusNumber, Move, Plan, PortPlan, PretestCheck, Procedure, ProcedureKind, ReadingRules,
+    RealLink, SafeState, Settle,
 };
 use psd_rig::emulator::script::{Script, ScriptedFault, What, When};
 use psd_rig::emulator::{Log, RigEmulator, of_plan};
@@ -22,27 +25,21 @@ impl Case {
     /// The plan of the first session.
     pub(super) fn plan(&self) -> Plan {
         let mut plan = elastic_plan(STIFFNESS, Vec::new());
-        for (index, leg) in self.legs.iter().enumerate() {
-            let procedure = |name: &str, kind| Procedure {
-                name: format!("{name}{index}"),
-                kind,
-            };
-            plan.procedures.push(procedure(
-                "leg",
-                ProcedureKind::Move(Move {
-                    to: Formula::Constant(leg.to),
-                    speed: leg.speed.map(Formula::Constant),
-                }),
-            ));
-            if leg.inspected {
-                let note = format!("look {index}");
-                plan.procedures
-                    .push(procedure("look", ProcedureKind::Inspect { note }));
+        match &self.test {
+            Test::Moves(legs) => plan.procedures = moves(legs),
+            Test::Frame(test) => {
+                let (grounds, procedures) = test.procedures();
+                plan = elastic_plan(STIFFNESS, procedures);
+                plan.grounds = grounds;
+                plan.specimens[0].behaviour = None;
+                plan.specimens[0].frame = Some(test.frame());
+                plan.strikers[0].mass = 100.0;
+                plan.strikers[0].velocity = 5e-3;
             }
         }
         let resolution = self.resolution();
         plan.rig.name = "bench".to_owned();
-        plan.rig.polarity = if self.turned { -1.0 } else { 1.0 };
+        plan.rig.polarity = self.sign(0);
         plan.rig.settle = Settle {
             band: resolution.max(5e-6),
             force_rate: 0.0,
@@ -65,19 +62,12 @@ impl Case {
             } else {
                 SafeState::Hold
             },
-            datum: if self.here.is_some() {
+            datum: if self.here {
                 Datum::Here
             } else {
                 Datum::Machine
             },
-            pretest_check: PretestCheck {
-                zero: 3.0,
-                probe: 5e-5,
-                stiffness: Interval {
-                    low: 0.5 * STIFFNESS,
-                    high: 2.0 * STIFFNESS,
-                },
-            },
+            pretest_check: pretest_check(STIFFNESS),
             readings: ReadingRules {
                 samples: self.samples,
                 rate: 10.0,
@@ -91,13 +81,10 @@ impl Case {
             },
             watchdog: 3.0,
             own_speed: self.own_speed,
-            axes: Vec::new(),
+            axes: self.listed_axes(),
         });
         plan.limits = Limits {
-            displacement: Interval {
-                low: -1e-3,
-                high: 1e-3,
-            },
+            displacement: within(1e-3),
             force: Interval {
                 low: -1500.0,
                 high: 1500.0,
@@ -111,6 +98,63 @@ impl Case {
         plan
     }
 
+    /// The axes as the plan lists them; it lists none for a specimen of one degree of freedom.
+    fn listed_axes(&self) -> Vec<AxisPlan> {
+        let Test::Frame(test) = &self.test else {
+            return Vec::new();
+        };
+        let axes = self.axes.iter().zip(test.stiffness_at_axes()).enumerate();
+        let listed = axes.map(|(index, (axis, stiffness))| {
+            let mut listed = AxisPlan {
+                polarity: Some(self.sign(index)),
+                displacement: axis.farthest.map(within),
+                pretest_check: Some(pretest_check(stiffness)),
+                ..AxisPlan::default()
+            };
+            match self.devices {
+                Devices::NativeAndCells if index % 2 == 0 => {
+                    let newtons_per_unit = vec![1.0];
+                    listed.load_cell = Some(device(Dialect::Scpi { newtons_per_unit }));
+                }
+                Devices::NativeAndCells => {
+                    listed.load_cell = Some(device(Dialect::Hx711));
+                    listed.calibration.newtons_per_count = Some(0.01);
+                    listed.calibration.zero_offset = Some(700.0);
+                }
+                Devices::Sites if index > 0 => {
+                    listed.actuator = Some(device(site(index..index + 1)));
+                }
+                _ => {}
+            }
+            listed
+        });
+        listed.collect()
+    }
+
+    /// +1 or −1 \[-\].
+    fn sign(&self, axis: usize) -> f64 {
+        if self.axes[axis].turned { -1.0 } else { 1.0 }
+    }
+
+    /// Whether the controller or the load cell of an axis is a device of this axis alone.
+    fn has_own(&self, part: Part) -> bool {
+        match self.devices {
+            Devices::NativeAndCells => part.on_load_cell,
+            Devices::Sites => !part.on_load_cell && part.axis > 0,
+            _ => false,
+        }
+    }
+
+    /// Line of a part of the rig; that of the first controller, if there is no such line.
+    pub(super) fn line_of(&self, part: Part) -> usize {
+        match (self.devices, part.on_load_cell) {
+            (Devices::Sites, false) => part.axis,
+            (Devices::NativeAndCells, true) => 1 + part.axis,
+            (_, true) if self.dialects().1.is_some() => 1,
+            _ => 0,
+        }
+    }
+
     fn resolution(&self) -> f64 {
         if self.devices == Devices::Mark10 {
             1e-5
@@ -119,9 +163,14 @@ impl Case {
         }
     }
 
+    /// The actuator of the rig, and its load cell if that is a device apart.
     fn dialects(&self) -> (Dialect, Option<Dialect>) {
         match self.devices {
-            Devices::Native => (Dialect::Native, None),
+            Devices::Native | Devices::NativeAndCells => (Dialect::Native, None),
+            Devices::NativeAndMeter => {
+                let newtons_per_unit = vec![1.0; self.axes.len()];
+                (Dialect::Native, Some(Dialect::Scpi { newtons_per_unit }))
+            }
             Devices::GrblAndHx711 => (Dialect::Grbl, Some(Dialect::Hx711)),
             Devices::GrblAndIndicator => (Dialect::Grbl, Some(Dialect::Indicator)),
             Devices::GrblAndScpi => {
@@ -131,22 +180,18 @@ impl Case {
             Devices::GrblAndGauge => (Dialect::Grbl, Some(Dialect::Mark10Gauge)),
             Devices::Instron => (Dialect::Instron, None),
             Devices::Mark10 => (Dialect::Mark10, None),
-            Devices::Nees => {
-                let control_points = vec!["MDL-00-01".to_owned()];
-                (Dialect::Nees { control_points }, None)
-            }
+            Devices::Nees => (site(0..self.axes.len()), None),
+            Devices::Sites => (site(0..1), None),
             Devices::Modbus(registers) => (Dialect::Modbus(map(registers)), None),
         }
     }
 
     /// Whether the rig reports its serial number and its power-up.
     pub(super) const fn tells_identity(&self) -> bool {
-        matches!(self.devices, Devices::Native)
-    }
-
-    /// Position of the rig before the run, in its own coordinate \[m\].
-    pub(super) fn start(&self) -> f64 {
-        self.here.unwrap_or(0.0)
+        matches!(
+            self.devices,
+            Devices::Native | Devices::NativeAndMeter | Devices::NativeAndCells
+        )
     }
 
     /// The rig at its start, with these faults.
@@ -171,10 +216,51 @@ impl Case {
         let boot = other.map_or(BOOT, |(_, boot)| boot);
         link.actuator.serial_number = other.map(|(serial_number, _)| serial_number.to_owned());
         let script = Script {
-            faults: faults.iter().filter_map(|fault| scripted(fault)).collect(),
-            starts: vec![(0, self.start())],
+            faults: faults
+                .iter()
+                .filter_map(|fault| self.scripted(fault))
+                .collect(),
+            starts: (0..).zip(self.axes.iter().map(|axis| axis.start)).collect(),
         };
         of_plan(&plan, &script, log, self.seed, Some(boot)).expect("the plan has a specimen")
+    }
+
+    /// The fault as the emulator scripts it. None: it is a fault of another part.
+    fn scripted(&self, fault: &Fault) -> Option<ScriptedFault> {
+        let controller = |axis| Part {
+            axis,
+            on_load_cell: false,
+        };
+        let (part, when, what) = match fault {
+            Fault::Reply {
+                after,
+                on,
+                count,
+                what,
+            } => (
+                *on,
+                When::AfterReplies(*after),
+                What::Replies(*what, Some(*count)),
+            ),
+            Fault::Controller { after, axis, what } => (
+                controller(*axis),
+                When::AfterReplies(*after),
+                What::Line(*what),
+            ),
+            Fault::Mechanical { after, axis, what } => (
+                controller(*axis),
+                When::AfterMoves(*after),
+                What::Rig(what.clone()),
+            ),
+            _ => return None,
+        };
+        Some(ScriptedFault {
+            on_load_cell: part.on_load_cell,
+            own_of: self.has_own(part).then_some(part.axis),
+            actuator: part.axis,
+            when,
+            what,
+        })
     }
 
     pub(super) fn witness(&self) -> Witness {
@@ -185,7 +271,7 @@ impl Case {
             by_time: self.devices == Devices::Instron,
         };
         let obeys = match self.devices {
-            Devices::Nees => Obeys {
+            Devices::Nees | Devices::Sites => Obeys {
                 speed: false,
                 ..all
             },
@@ -205,13 +291,12 @@ impl Case {
             },
             _ => all,
         };
-        let (sign, plan) = (if self.turned { -1.0 } else { 1.0 }, self.plan());
-        Witness::new(
-            obeys,
-            (sign, self.start()),
-            plan.limits.displacement,
-            (self.resolution(), plan.rig.settle.band),
-        )
+        let plan = self.plan();
+        let coordinates = (0..self.axes.len()).map(|axis| (self.sign(axis), self.axes[axis].start));
+        let near = (self.resolution(), plan.rig.settle.band);
+        let mut witness = Witness::new(obeys, coordinates.collect(), near);
+        witness.limits_of(&plan);
+        witness
     }
 }
 
@@ -225,11 +310,16 @@ pub(super) fn amended(plan: &Plan, amendments: &[Amendment]) -> Plan {
                     link.own_speed = *speed;
                 }
             }
-            Amendment::Limits(farthest) => {
-                plan.limits.displacement = Interval {
-                    low: -farthest,
-                    high: *farthest,
-                };
+            Amendment::Limits(farthest) => plan.limits.displacement = within(*farthest),
+            Amendment::AxisLimits(axis, farthest) => {
+                if let Link::Real(link) = &mut plan.rig.link {
+                    link.axes[*axis].displacement = Some(within(*farthest));
+                }
+            }
+            Amendment::Steps(load, steps) => {
+                if let ProcedureKind::Shake(shake) = &mut plan.procedures[*load].kind {
+                    shake.duration = Some(duration(*steps));
+                }
             }
             Amendment::Speed(leg, speed) => {
                 change(&mut plan, *leg, |leg| {
@@ -254,6 +344,55 @@ fn change(plan: &mut Plan, index: usize, change: impl FnOnce(&mut Move)) {
         });
     if let Some(leg) = legs.nth(index) {
         change(leg);
+    }
+}
+
+/// The moves, each with its inspection.
+fn moves(legs: &[Leg]) -> Vec<Procedure> {
+    let mut procedures = Vec::new();
+    for (index, leg) in legs.iter().enumerate() {
+        let procedure = |name: &str, kind| Procedure {
+            name: format!("{name}{index}"),
+            kind,
+        };
+        procedures.push(procedure(
+            "leg",
+            ProcedureKind::Move(Move {
+                to: Formula::Constant(leg.to),
+                speed: leg.speed.map(Formula::Constant),
+            }),
+        ));
+        if leg.inspected {
+            let note = format!("look {index}");
+            procedures.push(procedure("look", ProcedureKind::Inspect { note }));
+        }
+    }
+    procedures
+}
+
+const fn within(farthest: f64) -> Interval {
+    Interval {
+        low: -farthest,
+        high: farthest,
+    }
+}
+
+/// The pre-test check of an axis with this stiffness \[N/m\].
+const fn pretest_check(stiffness: f64) -> PretestCheck {
+    PretestCheck {
+        zero: 3.0,
+        probe: 5e-5,
+        stiffness: Interval {
+            low: 0.5 * stiffness,
+            high: 2.0 * stiffness,
+        },
+    }
+}
+
+/// A site with a control point for each of these axes.
+fn site(axes: Range<usize>) -> Dialect {
+    Dialect::Nees {
+        control_points: axes.map(|axis| format!("MDL-00-0{}", axis + 1)).collect(),
     }
 }
 
@@ -303,32 +442,4 @@ const fn swapped(number: ModbusNumber) -> ModbusNumber {
             high_word_first: !high_word_first,
         },
     }
-}
-
-/// The fault as the emulator scripts it. None: it is a fault of another part.
-fn scripted(fault: &Fault) -> Option<ScriptedFault> {
-    let (on_load_cell, when, what) = match fault {
-        Fault::Reply {
-            after,
-            on_load_cell,
-            count,
-            what,
-        } => (
-            *on_load_cell,
-            When::AfterReplies(*after),
-            What::Replies(*what, Some(*count)),
-        ),
-        Fault::Controller { after, what } => (false, When::AfterReplies(*after), What::Line(*what)),
-        Fault::Mechanical { after, what } => {
-            (false, When::AfterMoves(*after), What::Rig(what.clone()))
-        }
-        _ => return None,
-    };
-    Some(ScriptedFault {
-        on_load_cell,
-        own_of: None,
-        actuator: 0,
-        when,
-        what,
-    })
 }

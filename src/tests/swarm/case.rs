@@ -2,7 +2,8 @@
 //! and reduced. It runs nothing.
 
 use super::draw::Draw;
-use super::fault::{Change, CommandFault, DiskFault, Fault, Kill};
+use super::fault::{Change, CommandFault, DiskFault, Fault, Kill, Part};
+use super::frame::FrameTest;
 use psd_plan::ModbusNumber;
 use psd_rig::emulator::MechanicalFault;
 use psd_rig::emulator::script::{GarbagePosition, LineFault, ReplyFault};
@@ -19,6 +20,12 @@ pub(super) enum Devices {
     Mark10,
     Nees,
     Modbus(Registers),
+    /// A controller of all axes, and a meter with a channel for each.
+    NativeAndMeter,
+    /// A controller of all axes, and a load cell for each.
+    NativeAndCells,
+    /// A NEES site for each axis.
+    Sites,
 }
 
 /// What the register map of a Modbus drive contains.
@@ -34,6 +41,24 @@ pub(super) struct Registers {
     pub(super) command: bool,
     /// The drive has the other word order than the plan.
     pub(super) swapped: bool,
+}
+
+/// An axis of the rig.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axis {
+    /// Its position before the run \[m\].
+    pub(super) start: f64,
+    pub(super) turned: bool,
+    /// Its own limits are ± this \[m\]. None: those of the run.
+    pub(super) farthest: Option<f64>,
+}
+
+/// What the test does.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Test {
+    /// Moves of one axis.
+    Moves(Vec<Leg>),
+    Frame(FrameTest),
 }
 
 /// A move of the plan.
@@ -57,6 +82,10 @@ pub(super) enum Amendment {
     Speed(usize, f64),
     /// Target of the leg with this index.
     Target(usize, f64),
+    /// The own limits of an axis become ± this \[m\].
+    AxisLimits(usize, f64),
+    /// Steps of the ground motion with this index.
+    Steps(usize, u32),
 }
 
 /// What the operator answers in a session.
@@ -94,15 +123,15 @@ pub(super) struct Session {
 pub(super) struct Case {
     pub(super) seed: u64,
     pub(super) devices: Devices,
-    /// Position of the rig before the run \[m\], which is the zero of the plan. None: the zero of the rig.
-    pub(super) here: Option<f64>,
-    pub(super) turned: bool,
+    /// Whether the zero of the plan is the position before the run. Otherwise it is the zero of the rig.
+    pub(super) here: bool,
+    pub(super) axes: Vec<Axis>,
     pub(super) noise: f64,
     pub(super) samples: u32,
     pub(super) unloads: bool,
     /// \[m/s\]
     pub(super) own_speed: f64,
-    pub(super) legs: Vec<Leg>,
+    pub(super) test: Test,
     pub(super) sessions: Vec<Session>,
 }
 
@@ -110,10 +139,21 @@ pub(super) struct Case {
 const OWN_SPEEDS: [f64; 4] = [1e-3, 3e-3, 6e-3, 9e-3];
 const SPEEDS: [f64; 3] = [2e-3, 4e-3, 8e-3];
 
+/// Fraction of the lives with a frame.
+const FRAMES: f64 = 0.2;
+
 impl Case {
     pub(super) fn of_seed(seed: u64) -> Self {
         let mut draw = Draw::of_seed(seed);
-        let devices = devices(&mut draw);
+        let test = if draw.chance(FRAMES) {
+            Test::Frame(FrameTest::drawn(&mut draw))
+        } else {
+            Test::Moves(legs(&mut draw))
+        };
+        let devices = match &test {
+            Test::Moves(_) => of_one_axis(&mut draw),
+            Test::Frame(_) => of_a_frame(&mut draw),
+        };
         let homed = matches!(
             devices,
             Devices::GrblAndHx711
@@ -121,35 +161,139 @@ impl Case {
                 | Devices::GrblAndScpi
                 | Devices::GrblAndGauge
         );
-        // A homed Grbl has left its switch by 1 mm.
-        let here = if homed {
-            Some(-1e-3)
-        } else {
-            draw.chance(0.25)
-                .then(|| f64::from(draw.between(1, 30)) * 1e-4)
-        };
-        let legs = legs(&mut draw);
-        let first = session(&mut draw, devices, legs.len(), true);
+        let here = homed || draw.chance(0.25);
+        let axes = (0..test.axes()).map(|_| Axis {
+            start: match (homed, here) {
+                // A homed Grbl has left its switch by 1 mm.
+                (true, _) => -1e-3,
+                (_, true) => f64::from(draw.between(1, 30)) * 1e-4,
+                _ => 0.0,
+            },
+            turned: draw.chance(0.2),
+            farthest: (matches!(test, Test::Frame(_)) && draw.chance(0.3))
+                .then(|| f64::from(draw.between(2, 9)) * 1e-4),
+        });
+        let axes = axes.collect();
+        let first = session(&mut draw, devices, &test, true);
         let later = draw.between(0, 3);
         let sessions = std::iter::once(first)
-            .chain((0..later).map(|_| session(&mut draw, devices, legs.len(), false)))
+            .chain((0..later).map(|_| session(&mut draw, devices, &test, false)))
             .collect();
         Self {
             seed,
             devices,
             here,
-            turned: draw.chance(0.2),
+            axes,
             noise: if draw.chance(0.3) { 0.05 } else { 0.0 },
             samples: if draw.chance(0.3) { 3 } else { 1 },
             unloads: draw.chance(0.2),
             own_speed: draw.one_of(&OWN_SPEEDS),
-            legs,
+            test,
             sessions,
         }
     }
 }
 
-fn devices(draw: &mut Draw) -> Devices {
+impl Case {
+    /// Whether every reading is that of the specimen of the plan: nothing befalls the rig itself, the motion of the plan stays, and no line
+    /// can give another number.
+    pub(super) fn reads_the_truth(&self) -> bool {
+        let is_checked = self.devices == Devices::Native;
+        let faults = self.sessions.iter().flat_map(|session| &session.faults);
+        let changes = self.sessions.iter().flat_map(|session| &session.before);
+        let amended = self.sessions.iter().flat_map(|session| &session.amended);
+        self.noise == 0.0
+            && { amended }.all(|amendment| {
+                matches!(
+                    amendment,
+                    Amendment::OwnSpeed(_) | Amendment::Limits(_) | Amendment::AxisLimits(..)
+                )
+            })
+            && { changes }.all(|change| match change {
+                Change::Waits(_) => true,
+                // The emulated specimen is a new one.
+                Change::Restarted => !matches!(&self.test, Test::Frame(test) if test.yields()),
+                _ => false,
+            })
+            && { faults }.all(|fault| match fault {
+                Fault::Mechanical { .. } => false,
+                Fault::Reply { what, .. } => {
+                    is_checked || matches!(what, ReplyFault::Drop | ReplyFault::SplitAt(_))
+                }
+                _ => true,
+            })
+    }
+
+    /// By how much the floors of two runs of this test can differ in position \[m\] and force \[N\]; not at all if both are 0.
+    pub(super) fn differs_within(&self) -> [f64; 2] {
+        let mut faults = self.sessions.iter().flat_map(|session| &session.faults);
+        let is_held = !faults.all(|fault| matches!(fault, Fault::Killed(_)));
+        match &self.test {
+            // A rig that was held within the settling band of its target is read where it stands.
+            Test::Frame(_) if is_held || self.is_restarted() => [2e-5, 8.0],
+            // The emulated specimen rounds its force by the instants at which it is read: the last digit on the line can differ. The native
+            // line resolves 1 nm and 1 mN of a rig.
+            Test::Frame(test) if test.yields() => [1e-8, 0.1],
+            _ => [0.0; 2],
+        }
+    }
+
+    fn is_restarted(&self) -> bool {
+        let mut changes = self.sessions.iter().flat_map(|session| &session.before);
+        changes.any(|change| *change == Change::Restarted)
+    }
+
+    /// The same test in one session, in which nothing happens.
+    pub(super) fn undisturbed(&self) -> Self {
+        let operator = Operator {
+            releases: true,
+            goes_on: true,
+            notes: false,
+            waits: 0,
+            ..self.sessions[0].operator
+        };
+        Self {
+            sessions: vec![Session {
+                before: Vec::new(),
+                amended: Vec::new(),
+                faults: Vec::new(),
+                operator,
+            }],
+            ..self.clone()
+        }
+    }
+}
+
+impl Test {
+    /// Axes of the rig.
+    pub(super) fn axes(&self) -> usize {
+        match self {
+            Self::Moves(_) => 1,
+            Self::Frame(test) => test.stiffness_at_axes().len(),
+        }
+    }
+
+    /// How much longer it takes than some moves of one axis.
+    fn length(&self) -> u32 {
+        match self {
+            Self::Moves(_) => 1,
+            Self::Frame(_) => 2,
+        }
+    }
+}
+
+fn of_a_frame(draw: &mut Draw) -> Devices {
+    draw.one_of(&[
+        Devices::Native,
+        Devices::Native,
+        Devices::NativeAndMeter,
+        Devices::NativeAndCells,
+        Devices::Nees,
+        Devices::Sites,
+    ])
+}
+
+fn of_one_axis(draw: &mut Draw) -> Devices {
     match draw.between(0, 16) {
         0..=5 => Devices::Native,
         6 => Devices::GrblAndHx711,
@@ -193,19 +337,20 @@ fn legs(draw: &mut Draw) -> Vec<Leg> {
         .collect()
 }
 
-fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Session {
+fn session(draw: &mut Draw, devices: Devices, test: &Test, first: bool) -> Session {
+    let length = test.length();
     let mut faults = Vec::new();
     for _ in 0..draw.few() {
-        faults.push(of_the_rig(draw, devices));
+        faults.push(of_the_rig(draw, devices, test));
     }
     if draw.chance(if first { 0.6 } else { 0.3 }) {
-        faults.push(Fault::Killed(killed(draw)));
+        faults.push(Fault::Killed(killed(draw, length)));
     }
     if draw.chance(0.15) {
-        faults.push(of_the_disk(draw));
+        faults.push(of_the_disk(draw, length));
     }
     if draw.chance(0.1) {
-        let at = draw.between(0, 100);
+        let at = draw.between(0, 100 * length);
         faults.push(if draw.chance(0.5) {
             Fault::HoldNow { at }
         } else {
@@ -220,17 +365,17 @@ fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Sessi
         }
         let what = draw.one_of(&faults_of_a_command);
         faults.push(Fault::Command {
-            at: draw.between(0, 100),
+            at: draw.between(0, 100 * length),
             what,
         });
     }
     let (mut before, mut amended) = (Vec::new(), Vec::new());
     if !first {
         for _ in 0..draw.few() {
-            before.push(change(draw));
+            before.push(change(draw, test.axes()));
         }
         if draw.chance(0.35) {
-            amended.push(amendment(draw, legs));
+            amended.push(amendment(draw, test));
         }
     }
     Session {
@@ -252,24 +397,27 @@ fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Sessi
     }
 }
 
-fn of_the_rig(draw: &mut Draw, devices: Devices) -> Fault {
-    let after = u64::from(draw.between(0, 140));
+fn of_the_rig(draw: &mut Draw, devices: Devices, test: &Test) -> Fault {
+    let after = u64::from(draw.between(0, 140 * test.length()));
+    let axis = draw.below(test.axes());
     match draw.between(0, 10) {
         0..=5 => {
             let (on_load_cell, many) = (draw.chance(0.3), draw.chance(0.1));
+            let on = Part { axis, on_load_cell };
             let what = reply(draw);
             // psd discards what it has not asked for. A drive whose every answer is the one before it would have to send each of them
             // in time, and all look alike: position for force, force for position.
             let alike = matches!(devices, Devices::Modbus(_)) && what == ReplyFault::Replay;
             Fault::Reply {
                 after,
-                on_load_cell,
+                on,
                 count: if many && !alike { 40 } else { 1 },
                 what,
             }
         }
         6 | 7 => Fault::Controller {
             after,
+            axis,
             what: match draw.between(0, 5) {
                 0 => LineFault::HangUp,
                 1 => LineFault::StopReading,
@@ -280,7 +428,8 @@ fn of_the_rig(draw: &mut Draw, devices: Devices) -> Fault {
             },
         },
         _ => Fault::Mechanical {
-            after: u64::from(draw.between(0, 6)),
+            after: u64::from(draw.between(0, 6 * test.length())),
+            axis,
             what: match draw.between(0, 6) {
                 0 => MechanicalFault::Reach(0.0),
                 1 => MechanicalFault::Lag(0.2),
@@ -317,14 +466,14 @@ fn reply(draw: &mut Draw) -> ReplyFault {
     }
 }
 
-fn killed(draw: &mut Draw) -> Kill {
+fn killed(draw: &mut Draw, length: u32) -> Kill {
     let at_the_disk = draw.chance(0.7);
     Kill {
         at_the_disk,
         at: if at_the_disk {
-            draw.between(2, 70)
+            draw.between(2, 70 * length)
         } else {
-            draw.between(0, 120)
+            draw.between(0, 120 * length)
         },
         after: draw.chance(0.5),
         power: draw
@@ -333,8 +482,8 @@ fn killed(draw: &mut Draw) -> Kill {
     }
 }
 
-fn of_the_disk(draw: &mut Draw) -> Fault {
-    let at = draw.between(4, 70);
+fn of_the_disk(draw: &mut Draw, length: u32) -> Fault {
+    let at = draw.between(4, 70 * length);
     Fault::Disk {
         at,
         what: match draw.between(0, 4) {
@@ -348,23 +497,40 @@ fn of_the_disk(draw: &mut Draw) -> Fault {
     }
 }
 
-fn change(draw: &mut Draw) -> Change {
+fn change(draw: &mut Draw, axes: usize) -> Change {
     match draw.between(0, 6) {
         0 => Change::Waits(f64::from(draw.between(1, 50)) * 0.1),
         1 => Change::OtherRig {
             loaded: draw.chance(0.5),
         },
         2 => Change::Restarted,
-        3 => Change::OtherPlace(f64::from(draw.between(1, 8)) * 5e-5),
-        _ => Change::ForceGone,
+        3 => Change::OtherPlace {
+            axis: draw.below(axes),
+            by: f64::from(draw.between(1, 8)) * 5e-5,
+        },
+        _ => Change::ForceGone {
+            axis: draw.below(axes),
+        },
     }
 }
 
-fn amendment(draw: &mut Draw, legs: usize) -> Amendment {
-    match draw.between(0, 5) {
+fn amendment(draw: &mut Draw, test: &Test) -> Amendment {
+    let of_the_rig = |draw: &mut Draw, drawn: u32| match drawn {
         0 | 1 => Amendment::OwnSpeed(draw.one_of(&OWN_SPEEDS)),
-        2 => Amendment::Limits(f64::from(draw.between(1, 8)) * 1e-4),
-        3 => Amendment::Speed(draw.below(legs), draw.one_of(&SPEEDS)),
-        _ => Amendment::Target(draw.below(legs), f64::from(draw.between(1, 7)) * 1e-4),
+        _ => Amendment::Limits(f64::from(draw.between(1, 8)) * 1e-4),
+    };
+    match (test, draw.between(0, 5)) {
+        (_, drawn @ 0..=2) => of_the_rig(draw, drawn),
+        (Test::Moves(legs), 3) => Amendment::Speed(draw.below(legs.len()), draw.one_of(&SPEEDS)),
+        (Test::Moves(legs), _) => {
+            Amendment::Target(draw.below(legs.len()), f64::from(draw.between(1, 7)) * 1e-4)
+        }
+        (Test::Frame(_), 3) => Amendment::AxisLimits(
+            draw.below(test.axes()),
+            f64::from(draw.between(1, 8)) * 1e-4,
+        ),
+        (Test::Frame(test), _) => {
+            Amendment::Steps(draw.below(test.loads.len()), draw.between(5, 12))
+        }
     }
 }

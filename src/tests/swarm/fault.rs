@@ -3,23 +3,32 @@
 use psd_rig::emulator::MechanicalFault;
 use psd_rig::emulator::script::{LineFault, ReplyFault};
 
+/// The part of a rig that a fault befalls: the controller or the load cell of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    pub(super) axis: usize,
+    pub(super) on_load_cell: bool,
+}
+
 /// A fault within a session. Calls of the disk and commands to the rig are counted from the start of the session, replies and moves from
 /// the power-up of the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Fault {
     Reply {
         after: u64,
-        on_load_cell: bool,
+        on: Part,
         count: u64,
         what: ReplyFault,
     },
     Controller {
         after: u64,
+        axis: usize,
         what: LineFault,
     },
     Mechanical {
         /// Number of moves.
         after: u64,
+        axis: usize,
         what: MechanicalFault,
     },
     Command {
@@ -82,10 +91,10 @@ pub(super) enum Change {
     OtherRig { loaded: bool },
     /// Its controller was switched off and on.
     Restarted,
-    /// It was moved by hand, by this \[m\].
-    OtherPlace(f64),
-    /// The specimen carries nothing any more.
-    ForceGone,
+    /// An axis was moved by hand, by this \[m\].
+    OtherPlace { axis: usize, by: f64 },
+    /// The specimen carries nothing any more at an axis.
+    ForceGone { axis: usize },
 }
 
 impl Fault {
@@ -178,8 +187,8 @@ impl Change {
             Self::Waits(_) => "time passes",
             Self::OtherRig { .. } => "another rig",
             Self::Restarted => "rig restarted",
-            Self::OtherPlace(_) => "another place",
-            Self::ForceGone => "force gone",
+            Self::OtherPlace { .. } => "another place",
+            Self::ForceGone { .. } => "force gone",
         }
     }
 

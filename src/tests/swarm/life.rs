@@ -1,17 +1,22 @@
 //! A life from its first session to its last: the run, then resumptions, as `psd run` and `psd resume` perform them. In: a case. Out: the
 //! breaches of laws, and what was met on the way.
 
+use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::bench;
-use super::case::{Case, Session};
+use super::case::{Case, Session, Test};
 use super::disk::{Disk, Killed};
-use super::fault::{Change, Fault, Kill};
+use super::fault::{Change, Fault, Kill, Part};
+use super::frame::{FrameTest, steps_of};
 use super::laws::{Breach, Law, Released};
 use super::operator::Operator;
 use super::tally::Tally;
-use super::world::{Endless, World};
-use crate::run::replay::{self, LoggedRun, Recorded, ResumeBody, TargetStatus};
+use super::world::{Endless, World, commanded};
+use crate::run::replay::tests::measured;
+use crate::run::replay::{
+    self, IntentBody, LoggedRun, Recorded, ResumeBody, SampleBody, TargetStatus,
+};
 use crate::tests::testing::header;
 use psd_plan::record::{Outcome, Record};
 use psd_plan::{Behind, Plan};
@@ -25,6 +30,8 @@ use psd_testing::journal::recover;
 pub(super) struct Lived {
     pub(super) breaches: Vec<Breach>,
     pub(super) tally: Tally,
+    /// The run that was completed.
+    completed: Option<Record>,
 }
 
 /// Lives a case.
@@ -40,7 +47,62 @@ pub(super) fn live_logged(case: &Case, log: Log) -> Lived {
             break;
         }
     }
-    life.ended()
+    let resumed = life.resumptions > 0;
+    let mut lived = life.ended();
+    if let (Some(record), true) = (&lived.completed, resumed && case.reads_the_truth()) {
+        let undisturbed = live(&case.undisturbed()).completed;
+        let unlike = match &undisturbed {
+            Some(undisturbed) => unlike(case, record, undisturbed),
+            None => Some("undisturbed, it is not completed".to_owned()),
+        };
+        lived.tally.decided(Law::SameMotion, 1);
+        lived.breaches.extend(unlike.map(|how| Breach {
+            law: Law::SameMotion,
+            how,
+        }));
+    }
+    lived
+}
+
+/// Where the results of a record differ from those of another, with the words before.
+fn unlike(case: &Case, record: &Record, other: &Record) -> Option<String> {
+    let (results, others) = (measured(record), measured(other));
+    if results == others || nearly(record, other, case.differs_within()) {
+        return None;
+    }
+    let equal = results.bytes().zip(others.bytes());
+    let equal = equal.take_while(|(one, other)| one == other).count();
+    let around = |text: &str| {
+        let bytes = &text.as_bytes()[equal.saturating_sub(200)..text.len().min(equal + 80)];
+        String::from_utf8_lossy(bytes).into_owned()
+    };
+    let (results, others) = (around(&results), around(&others));
+    Some(format!(
+        "results differ: {results:?}, undisturbed {others:?}"
+    ))
+}
+
+/// Whether positions \[m\] and forces \[N\] of the floors differ by no more than this, in every step.
+fn nearly(record: &Record, other: &Record, [far, force]: [f64; 2]) -> bool {
+    let steps = |record: &Record| -> Vec<[Vec<f64>; 2]> {
+        let steps = record.procedures.iter().flat_map(steps_of);
+        let moved = steps.map(|step| {
+            let positions = [&step.command, &step.displacement, &step.computed];
+            let positions = positions.into_iter().flatten().copied().collect();
+            [positions, step.restoring_force.clone()]
+        });
+        moved.collect()
+    };
+    let (steps, others) = (steps(record), steps(other));
+    let near = |one: &[f64], other: &[f64], within: f64| {
+        let mut numbers = one.iter().zip(other);
+        numbers.all(|(one, other)| (one - other).abs() <= within)
+    };
+    let mut pairs = steps.iter().zip(&others);
+    far > 0.0
+        && steps.len() == others.len()
+        && pairs
+            .all(|([x, r], [other_x, other_r])| near(x, other_x, far) && near(r, other_r, force))
 }
 
 pub(super) struct Life<'a> {
@@ -57,6 +119,8 @@ pub(super) struct Life<'a> {
     /// Number of power-ups beside the first, and of resumptions in the run log.
     power_ups: u16,
     resumptions: usize,
+    /// The run that was completed.
+    completed: Option<Record>,
     tally: Tally,
 }
 
@@ -85,6 +149,7 @@ impl<'a> Life<'a> {
             same_power: true,
             power_ups: 0,
             resumptions: 0,
+            completed: None,
             tally: Tally::default(),
         }
     }
@@ -114,11 +179,7 @@ impl<'a> Life<'a> {
             } else {
                 Law::Unbroken
             };
-            let how = panic
-                .downcast_ref::<String>()
-                .cloned()
-                .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-            self.check(law, false, || how.unwrap_or_default());
+            self.check(law, false, || words_of(&*panic));
             Ended::Killed
         });
         for law in [Law::Unbroken, Law::Ends] {
@@ -135,20 +196,17 @@ impl<'a> Life<'a> {
         for name in self.world.take_struck() {
             self.tally.add(name);
         }
-        self.concluded(index, &ended)
+        let concluded = catch_unwind(AssertUnwindSafe(|| self.concluded(index, &ended)));
+        concluded.unwrap_or_else(|panic| {
+            self.check(Law::Unbroken, false, || words_of(&*panic));
+            false
+        })
     }
 
     /// What happened to the rig while psd was away.
     fn change(&mut self, session: &Session, change: Change) {
         self.tally.add(change.name());
-        let (at, force_gone) = {
-            let state = self.world.lock();
-            let rig = state.bench.rig();
-            (
-                rig.commanded(),
-                matches!(change, Change::OtherRig { loaded: false }),
-            )
-        };
+        let at = commanded(self.world.lock().bench.rig());
         self.power_ups += 1;
         let boot = self.power_ups;
         let exchange = |serial_number: &str| {
@@ -157,7 +215,7 @@ impl<'a> Life<'a> {
                 self.case
                     .rig(&faults, Some((serial_number, boot)), Log::none()),
             );
-            self.world.move_by_hand(at);
+            self.world.move_by_hand(&at);
         };
         match change {
             Change::Waits(seconds) => self.world.pass(seconds),
@@ -169,12 +227,21 @@ impl<'a> Life<'a> {
                 exchange(if self.same_rig { "0042" } else { "0099" });
                 self.same_power = false;
             }
-            Change::OtherPlace(by) => self.world.move_by_hand(at + by),
-            Change::ForceGone => {}
+            Change::OtherPlace { axis, by } => {
+                let mut to = at.clone();
+                to[axis] += by;
+                self.world.move_by_hand(&to);
+            }
+            Change::ForceGone { .. } => {}
         }
-        if force_gone || change == Change::ForceGone {
+        let unloaded = match change {
+            Change::OtherRig { loaded: false } => 0..at.len(),
+            Change::ForceGone { axis } => axis..axis + 1,
+            _ => 0..0,
+        };
+        for axis in unloaded {
             let nothing = psd_rig::emulator::MechanicalFault::ScaleForce(0.0);
-            self.world.lock().bench.rig_mut().strike(0, nothing);
+            self.world.lock().bench.rig_mut().strike(axis, nothing);
         }
     }
 
@@ -214,7 +281,12 @@ impl<'a> Life<'a> {
 
     /// Checks what the session left behind. Returns whether another one can follow.
     fn concluded(&mut self, index: usize, ended: &Ended) -> bool {
+        let of = match &self.case.test {
+            Test::Moves(_) => "",
+            Test::Frame(_) => " of a frame",
+        };
         let kind = if index == 0 { "run" } else { "resume" };
+        let kind = format!("{kind}{of}");
         let path = match ended {
             Ended::Killed => format!("{kind} killed"),
             Ended::Refused(reason) => {
@@ -265,14 +337,8 @@ impl<'a> Life<'a> {
         if resumptions > self.resumptions {
             // The run log has the power-up of the rig with which it went on.
             (self.resumptions, self.same_power) = (resumptions, true);
-        }
-        let amendments = recovered
-            .lines
-            .iter()
-            .filter(|line| line.kind == EntryKind::Amend);
-        if amendments.count() as u64 > self.tally.amendments {
-            self.tally.amendments += 1;
             let amended = &self.case.sessions[index].amended;
+            self.tally.amendments += u64::from(!amended.is_empty());
             self.plan = bench::amended(&self.plan, amended);
         }
         self.verified(&recovered, &logged, ended);
@@ -286,9 +352,12 @@ impl<'a> Life<'a> {
             _ => true,
         };
         if uncounted {
-            (witness.repeated, witness.killed) = (witness.repeated.min(allowed), true);
+            witness.ended_without_words(allowed);
         }
         if let Ended::Recorded(recorded) = ended {
+            if recorded.record.outcome == Outcome::Completed {
+                self.completed = Some(recorded.record.clone());
+            }
             witness.session_ended(&recorded.record, at_rest, allowed);
         }
         let early = self.disk.early();
@@ -311,6 +380,10 @@ impl<'a> Life<'a> {
         self.check(Law::Verifies, mismatch.is_none(), || {
             mismatch.map_or_else(String::new, |mismatch| mismatch.to_string())
         });
+        if let Test::Frame(test) = &self.case.test {
+            let unlike = at_its_scale(test, logged, &replayed.record);
+            self.check(Law::Scaled, unlike.is_none(), || unlike.unwrap_or_default());
+        }
         if let Ended::Recorded(recorded) = ended
             && recorded.fault.is_none()
         {
@@ -331,14 +404,20 @@ impl<'a> Life<'a> {
             .sessions
             .iter()
             .flat_map(|session| &session.faults);
+        let replies = |on| {
+            let received = state.replies.get(self.case.line_of(on));
+            received.copied().unwrap_or(0)
+        };
         for fault in faults {
             let struck = match fault {
-                Fault::Reply {
-                    after,
-                    on_load_cell,
-                    ..
-                } => state.replies[usize::from(*on_load_cell)] > *after,
-                Fault::Controller { after, .. } => state.replies[0] > *after,
+                Fault::Reply { after, on, .. } => replies(*on) > *after,
+                Fault::Controller { after, axis, .. } => {
+                    let on = Part {
+                        axis: *axis,
+                        on_load_cell: false,
+                    };
+                    replies(on) > *after
+                }
                 Fault::Mechanical { after, .. } => state.bench.rig().moves().len() as u64 >= *after,
                 _ => false,
             };
@@ -355,8 +434,15 @@ impl<'a> Life<'a> {
         Lived {
             breaches,
             tally: self.tally,
+            completed: self.completed,
         }
     }
+}
+
+fn words_of(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+    text.unwrap_or_default()
 }
 
 fn killed(session: &Session) -> Option<Kill> {
@@ -384,13 +470,15 @@ pub(super) fn open(
             axes: behind.axes,
             serial_number: behind.link.serial_number.clone(),
         };
-        controllers::together(behind.into_iter().enumerate().map(member).collect(), 1)
+        let members = behind.into_iter().enumerate().map(member).collect();
+        controllers::together(members, plan.rig.axes().unwrap_or(1))
     };
+    let actuators = link.actuators().len();
     RealRig::open(
         &plan.rig,
         &plan.limits,
         devices(link.actuators(), 0).expect("an actuator"),
-        devices(link.load_cells(), 1),
+        devices(link.load_cells(), actuators),
         Box::new(world.clock()),
         stop_request.clone(),
     )
@@ -425,6 +513,49 @@ fn same(one: &Record, other: &Record) -> bool {
         && one.events == other.events
         && one.procedures.len() == other.procedures.len()
         && format!("{:?}", one.procedures.last()) == format!("{:?}", other.procedures.last())
+}
+
+/// The first step of the tables that is not among the targets and readings of the rig, at its scale and in its order.
+fn at_its_scale(test: &FrameTest, logged: &LoggedRun, record: &Record) -> Option<String> {
+    let (mut sent, mut moves) = (Vec::new(), Vec::new());
+    for line in &logged.lines {
+        match line.kind {
+            EntryKind::Intent => sent = line.read::<IntentBody>().ok()?.to,
+            EntryKind::Sample => {
+                let SampleBody { x, r, .. } = line.read().ok()?;
+                moves.push([sent.clone(), x, r]);
+            }
+            _ => {}
+        }
+    }
+    let mut moves = moves.iter();
+    for procedure in &record.procedures {
+        let mut steps = steps_of(procedure);
+        // A limit can end a step on its way.
+        if !procedure.complete {
+            steps.pop();
+        }
+        for step in steps {
+            let stated = [
+                test.axes_of(&step.command),
+                test.measured_at(step),
+                test.forces_of(step),
+            ];
+            if !moves.any(|[to, x, r]| {
+                let pairs = [to, x, r].into_iter().zip(&stated);
+                pairs
+                    .zip([1e-12, 1e-12, 1e-6])
+                    .all(|((rig, stated), near)| {
+                        let mut axes = rig.iter().zip(stated);
+                        rig.len() == stated.len()
+                            && axes.all(|(rig, stated)| (rig - stated).abs() <= near)
+                    })
+            }) {
+                return Some(format!("no move of the rig is {stated:?}, of {step:?}"));
+            }
+        }
+    }
+    None
 }
 
 /// Whether an operator can read this.

@@ -144,7 +144,7 @@ impl Life<'_> {
         let mut state = self.world.lock();
         let witness = &mut state.witness;
         witness.released = Some(Released::of(plan).and(decision));
-        witness.limits = plan.limits.displacement;
+        witness.limits_of(plan);
         witness.other_specimen = other_rig(self, session)
             .or_else(|| other_specimen(plan, before, found, bands, session));
         witness.decided[Law::SameSpecimen as usize] += 1;
@@ -196,8 +196,6 @@ fn other_specimen(
     bands: &Bands,
     session: &Session,
 ) -> Option<String> {
-    let (at, force) = (found.displacement[0], found.force[0]);
-    let (band, slack) = (2.0 * bands.displacement[0], 2.0 * bands.force[0]);
     let last = |kind: EntryKind| before.lines.iter().rev().find(|line| line.kind == kind);
     let intent = before
         .set_aside
@@ -223,33 +221,58 @@ fn other_specimen(
     if let Some(found) = held.or(resumed) {
         (sampled.x, sampled.r) = found;
     }
-    let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
-    if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {
-        let intent: IntentBody = intent.read().ok()?;
-        (from, to) = (from.min(intent.to[0]), to.max(intent.to[0]));
+    let target = match intent.filter(|intent| intent.seq > sample.seq) {
+        Some(intent) => intent.read::<IntentBody>().ok()?.to,
+        None => sampled.x.clone(),
+    };
+    for (axis, at) in found.displacement.iter().enumerate() {
+        let band = 2.0 * bands.displacement[axis];
+        let (low, high) = (
+            sampled.x[axis].min(target[axis]),
+            sampled.x[axis].max(target[axis]),
+        );
+        if !(low - band..=high + band).contains(at) {
+            return Some(format!(
+                "it went on from {at} m, the run log leaves axis {} in {low} .. {high} m",
+                axis + 1
+            ));
+        }
     }
-    if !(from - band..=to + band).contains(&at) {
-        return Some(format!(
-            "it went on from {at} m, the run log leaves it in {from} .. {to} m"
-        ));
+    if session.operator.accept_relaxation {
+        return None;
     }
-    // A specimen that was softer in the readings before may be so again.
-    let mut window = plan.rig.link.as_real()?.pretest_check.stiffness;
-    let readings = before
-        .lines
-        .iter()
-        .rev()
-        .filter(|line| line.kind == EntryKind::Sample);
-    let elsewhere = readings
-        .filter_map(|line| line.read::<SampleBody>().ok())
-        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > bands.displacement[0]);
-    if let Some(earlier) = elsewhere {
-        let tangent = (sampled.r[0] - earlier.r[0]) / (sampled.x[0] - earlier.x[0]);
-        window.low = window.low.min(tangent.max(0.0));
+    let link = plan.rig.link.as_real()?;
+    let window = |axis: usize| link.pretest_check_of(axis).stiffness;
+    let travel = |axis: usize| found.displacement[axis] - sampled.x[axis];
+    for (axis, force) in found.force.iter().enumerate() {
+        // A specimen that was softer in the readings before may be so again.
+        let mut own = window(axis);
+        let readings = before
+            .lines
+            .iter()
+            .rev()
+            .filter(|line| line.kind == EntryKind::Sample);
+        let elsewhere = readings
+            .filter_map(|line| line.read::<SampleBody>().ok())
+            .find(|earlier| (earlier.x[axis] - sampled.x[axis]).abs() > bands.displacement[axis]);
+        if let Some(earlier) = elsewhere {
+            let tangent = (sampled.r[axis] - earlier.r[axis]) / (sampled.x[axis] - earlier.x[axis]);
+            own.low = own.low.min(tangent.max(0.0));
+        }
+        // The stiffness matrix is positive: another axis adds at most √(kᵢ kⱼ) Δⱼ.
+        let others = (0..found.force.len()).filter(|other| *other != axis);
+        let others: f64 = others
+            .map(|other| (own.high * window(other).high).sqrt() * travel(other).abs())
+            .sum();
+        let slack = 2.0 * bands.force[axis] + others;
+        let ends = [own.low, own.high].map(|stiffness| sampled.r[axis] + stiffness * travel(axis));
+        let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);
+        if !(low..=high).contains(force) {
+            return Some(format!(
+                "it went on with {force} N at axis {}, expected {low} .. {high} N",
+                axis + 1
+            ));
+        }
     }
-    let ends =
-        [window.low, window.high].map(|stiffness| sampled.r[0] + stiffness * (at - sampled.x[0]));
-    let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);
-    let other = !(low..=high).contains(&force) && !session.operator.accept_relaxation;
-    other.then(|| format!("it went on with {force} N at {at} m, expected {low} .. {high} N"))
+    None
 }

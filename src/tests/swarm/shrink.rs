@@ -1,8 +1,10 @@
 //! Reduces a case that breaks a law. In: a case, the law. Out: a case that breaks the same law with fewer sessions, faults and moves.
 
-use super::case::{Case, Devices};
+use super::case::{Case, Devices, Leg, Test};
+use super::frame::FrameTest;
 use super::laws::Law;
 use super::life::live;
+use psd_plan::{Part, Scale};
 
 /// Most lives that a reduction takes.
 const MOST: usize = 400;
@@ -56,26 +58,68 @@ fn smaller(case: &Case) -> Vec<Case> {
         without(&|case| case.sessions[index].operator.waits = 0);
         without(&|case| case.sessions[index].operator.notes = false);
     }
-    // An amendment names a leg by its index.
-    if case.legs.len() > 1 {
-        without(&|case| _ = case.legs.pop());
+    // An amendment names a leg or a load by its index.
+    match &case.test {
+        Test::Moves(legs) => {
+            for index in 0..legs.len() {
+                let leg = |case: &mut Case, change: &dyn Fn(&mut Leg)| {
+                    if let Test::Moves(legs) = &mut case.test {
+                        change(&mut legs[index]);
+                    }
+                };
+                without(&|case| leg(case, &|leg| leg.inspected = false));
+                without(&|case| leg(case, &|leg| leg.speed = None));
+            }
+            if legs.len() > 1 {
+                without(&|case| {
+                    if let Test::Moves(legs) = &mut case.test {
+                        legs.pop();
+                    }
+                });
+            }
+        }
+        Test::Frame(test) => {
+            let frame = |case: &mut Case, change: &dyn Fn(&mut FrameTest)| {
+                if let Test::Frame(test) = &mut case.test {
+                    change(test);
+                }
+            };
+            if test.loads.len() > 1 {
+                without(&|case| frame(case, &|test| _ = test.loads.pop()));
+            }
+            without(&|case| frame(case, &|test| test.weights = false));
+            without(&|case| {
+                frame(case, &|test| {
+                    test.members
+                        .iter_mut()
+                        .for_each(|member| member.yields = false);
+                });
+            });
+            without(&|case| {
+                frame(case, &|test| {
+                    for member in &mut test.members {
+                        if let Part::Tested { scale, .. } = &mut member.part {
+                            *scale = Scale::FULL;
+                        }
+                    }
+                });
+            });
+        }
     }
-    for index in 0..case.legs.len() {
-        without(&|case| case.legs[index].inspected = false);
-        without(&|case| case.legs[index].speed = None);
+    for index in 0..case.axes.len() {
+        without(&|case| case.axes[index].turned = false);
+        without(&|case| case.axes[index].farthest = None);
     }
     without(&|case| case.noise = 0.0);
     without(&|case| case.samples = 1);
-    without(&|case| case.turned = false);
     without(&|case| case.unloads = false);
-    without(&|case| (case.devices, case.here) = (Devices::Native, None));
-    without(&|case| {
-        if matches!(
-            case.devices,
-            Devices::Native | Devices::Instron | Devices::Modbus(_)
-        ) {
-            case.here = None;
-        }
-    });
+    without(&|case| case.devices = Devices::Native);
+    let is_homed = case.axes.iter().any(|axis| axis.start < 0.0);
+    if case.devices == Devices::Native || !is_homed {
+        without(&|case| {
+            case.here = false;
+            case.axes.iter_mut().for_each(|axis| axis.start = 0.0);
+        });
+    }
     found
 }

@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use super::disk::{Disk, Killed};
 use super::fault::{CommandFault, Fault, Kill};
-use super::laws::{READ_WITHIN, Witness};
+use super::laws::{Before, READ_WITHIN, Witness};
 use psd_rig::StopRequest;
-use psd_rig::emulator::RigEmulator;
+use psd_rig::emulator::{EmulatedRig, RigEmulator};
 use psd_rig::transport::{Clock, Emergency, Port};
 
 /// Interval between two checks of the controllers while time passes \[s\].
@@ -46,7 +46,7 @@ pub(super) struct State {
     dead: bool,
     struck: Vec<&'static str>,
     /// Blocks of bytes that each line has received from the rig since its power-up.
-    pub(super) replies: [u64; 2],
+    pub(super) replies: Vec<u64>,
 }
 
 impl World {
@@ -64,7 +64,7 @@ impl World {
             kill: None,
             dead: false,
             struck: Vec::new(),
-            replies: [0; 2],
+            replies: Vec::new(),
         })))
     }
 
@@ -105,25 +105,26 @@ impl World {
         let mut state = self.lock();
         state.earlier = state.now();
         state.bench = bench;
-        state.replies = [0; 2];
+        state.replies.clear();
         let State { bench, witness, .. } = &mut *state;
         witness.look_away(bench.rig());
     }
 
-    /// Someone moves the rig by hand to a position in its own coordinate \[m\]. An actuator that sticks stays, and its controller with it.
-    pub(super) fn move_by_hand(&self, to: f64) {
+    /// Someone moves the rig by hand to a position of each axis in its own coordinate \[m\]. An actuator that sticks stays, and its
+    /// controller with it.
+    pub(super) fn move_by_hand(&self, to: &[f64]) {
         let mut state = self.lock();
         let State { bench, witness, .. } = &mut *state;
-        let mut go = |to: f64| {
+        let mut go = |to: &[f64]| {
             let rig = bench.rig_mut();
             let (speed, time) = (rig.settings().top_speed, rig.time());
-            rig.go(to, speed);
+            rig.go_as(None, to, speed);
             bench.advance(time + 1.0);
-            bench.rig_mut().displacement()
+            displacements(bench.rig_mut())
         };
         let reached = go(to);
         if reached != to {
-            go(reached);
+            go(&reached);
         }
         witness.look_away(bench.rig());
     }
@@ -152,15 +153,17 @@ impl World {
         }
     }
 
-    /// Whether the rig does not move, whatever its controller wants.
+    /// Whether no axis of the rig moves, whatever its controller wants.
     pub(super) fn at_rest(&self) -> bool {
         let mut state = self.lock();
         if !state.bench.rig().moving() {
             return true;
         }
-        let before = state.bench.rig_mut().displacement();
+        let before = displacements(state.bench.rig_mut());
         state.pass(LOOK);
-        (state.bench.rig_mut().displacement() - before).abs() < 1e-9
+        let now = displacements(state.bench.rig_mut());
+        let mut axes = now.iter().zip(&before);
+        axes.all(|(now, before)| (now - before).abs() < 1e-9)
     }
 
     /// Seconds that the life has taken so far.
@@ -197,12 +200,15 @@ impl State {
         let now = self.now();
         let rig = self.bench.rig_mut();
         let moving = rig.moving() || now - self.moved <= READ_WITHIN;
-        let before = ([rig.commanded(), rig.displacement()], moving);
+        let before = Before {
+            positions: commanded(rig).into_iter().zip(displacements(rig)).collect(),
+            moving,
+        };
         act(&mut self.bench);
         if self.bench.rig().moving() {
             self.moved = self.now();
         }
-        self.witness.look(self.bench.rig(), before, &self.disk);
+        self.witness.look(self.bench.rig(), &before, &self.disk);
         if self.witness.obeys_late && !self.bench.obeys_later() {
             self.witness.begin(false);
         }
@@ -237,6 +243,18 @@ impl State {
     }
 }
 
+/// The commanded position of each axis \[m\].
+pub(super) fn commanded(rig: &EmulatedRig) -> Vec<f64> {
+    let axes = 0..rig.actuators();
+    axes.map(|axis| rig.commanded_of(axis)).collect()
+}
+
+/// The true position of each axis \[m\].
+fn displacements(rig: &mut EmulatedRig) -> Vec<f64> {
+    let axes = 0..rig.actuators();
+    axes.map(|axis| rig.displacement_of(axis)).collect()
+}
+
 /// psd's end of a line.
 pub(super) struct Line {
     world: World,
@@ -250,7 +268,9 @@ impl Line {
         if self.come.is_empty() {
             let mut state = self.world.lock();
             if let Some(bytes) = state.bench.take(self.index) {
-                state.replies[self.index.min(1)] += 1;
+                let lines = state.replies.len().max(self.index + 1);
+                state.replies.resize(lines, 0);
+                state.replies[self.index] += 1;
                 self.come = bytes;
             }
         }

@@ -36,7 +36,9 @@ pub struct SentMove {
     pub time: f64,
     /// Number of the move, if the protocol has one.
     pub id: Option<u64>,
-    /// One per actuator \[m\].
+    /// Indices of the actuators that move.
+    pub actuators: Vec<usize>,
+    /// One for each of them \[m\].
     pub targets: Vec<f64>,
     /// Speed of the actuator with the longest move \[m/s\].
     pub speed: f64,
@@ -298,6 +300,7 @@ impl EmulatedRig {
         self.moves.push(SentMove {
             time: self.time,
             id,
+            actuators: actuators.to_vec(),
             targets: targets.to_vec(),
             speed,
         });

@@ -98,6 +98,7 @@ impl EmulatedRig {
         self.moves.push(SentMove {
             time: self.time,
             id,
+            actuators: (0..paths.len()).collect(),
             targets: paths.iter().map(|path| path.to).collect(),
             speed,
         });

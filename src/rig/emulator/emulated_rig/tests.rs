@@ -28,6 +28,7 @@ fn it_moves_evenly_and_stops_at_its_target() {
         SentMove {
             time: 10.0,
             id: None,
+            actuators: vec![0],
             targets: vec![0.02],
             speed: 0.01
         }

@@ -216,6 +216,65 @@ fn without_the_newest_rig_it_would_move_at_the_speed_of_the_start() {
     );
 }
 
+/// psd can be killed after an amendment and before the resumption: the run did not go on, and is still that of the plan before.
+#[test]
+fn an_amendment_holds_from_its_resumption_on() {
+    let disk = PowerLoss::new();
+    let (plan, amended) = (limited(FAST), limited(SLOW));
+    let mut rig = RestingRig::new(&plan);
+    let killed = catch_unwind(AssertUnwindSafe(|| {
+        let mut journal = journal(Killed::at(&disk, 20, true));
+        begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
+        record(&plan, &mut rig, &mut Witness, journal, no_wall())
+    }));
+    assert!(killed.is_err());
+    let (recovered, before) = logged(&disk.written());
+    let mut journal = Journal::reopen(
+        Box::new(disk.clone()),
+        Durability::EverySyncPoint,
+        &recovered,
+    );
+    let amendment = AmendBody {
+        by: "A. Witness".to_owned(),
+        reason: "too fast".to_owned(),
+        differences: Vec::new(),
+        header: header(&amended),
+    };
+    amend(&mut journal, &amendment, &["another text".to_owned()]).unwrap();
+    let (recovered, stopped) = logged(&disk.written());
+    assert_eq!(
+        (&stopped.header, &stopped.texts),
+        (&before.header, &before.texts)
+    );
+    assert_eq!(stopped.interruptions, []);
+    assert_eq!(check_consistency(&recovered, &stopped, &plan), Ok(()));
+    assert_eq!(replay(&plan, stopped.clone()).mismatch, None);
+
+    let found = rig.read().unwrap();
+    let about = RigBody {
+        t: stopped.time,
+        ..RigBody::of(&rig)
+    };
+    let bands = Bands {
+        displacement: vec![1e-9],
+        force: vec![1e-6],
+        stiffness: vec![Interval::ALL],
+    };
+    let decision = decide(&stopped, &about, &found, &bands, false).unwrap();
+    let resumption = decision.resumption("A. Witness", "too fast", &found, stopped.time);
+    journal.append(EntryKind::Rig, &about).unwrap();
+    journal.append(EntryKind::Resume, &resumption).unwrap();
+    let (_, resumed) = logged(&disk.written());
+    assert_eq!(resumed.header, header(&amended));
+    assert_eq!(resumed.texts, ["another text"]);
+    let kinds: Vec<EventKind> = resumed
+        .interruptions
+        .iter()
+        .map(|event| event.kind)
+        .collect();
+    assert_eq!(kinds, [EventKind::Amendment, EventKind::Resume]);
+}
+
 #[test]
 fn a_faster_rig_needs_an_acceptance_of_its_own() {
     let speeds = |was, is| [("own speed", Some(was), Some(is))];

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use psd_plan::record::{History, ImpactHistory, Record};
 
 /// The measured and computed values of a run, without their times.
-pub(super) fn measured(record: &Record) -> String {
+pub(crate) fn measured(record: &Record) -> String {
     let mut text = String::new();
     for procedure in &record.procedures {
         writeln!(text, "{} {:?}", procedure.name, procedure.results).unwrap();

@@ -16,7 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use killed::killed_everywhere;
-use measured::measured;
+pub(crate) use measured::measured;
 
 use super::*;
 use crate::run::{Inspection, StepReport};
