@@ -308,6 +308,9 @@ pub fn warn(
             at,
         });
     }
+    // Neither band nor pre-test check are those of an axial axis.
+    let is_lateral = |axis: &usize| link.axes.get(*axis).is_none_or(|axis| axis.axial.is_none());
+    let axes = 0..axes.filter(is_lateral).count();
     let coarsest = axes
         .clone()
         .map(|axis| link.readings_of(axis).resolution)
