@@ -55,7 +55,7 @@ impl Session<'_> {
         let loads: Vec<(usize, f64)> = self.guard.axial_loads().collect();
         for (storey, force) in loads {
             let text = format!(
-                "the axial load of storey {} was not taken off: {}",
+                "the axial load of storey {} was not taken off: its target is {}",
                 storey + 1,
                 stated(force, Dimension::FORCE)
             );

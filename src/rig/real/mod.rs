@@ -449,10 +449,8 @@ impl Rig for RealRig {
 
     fn declared_noise(&self) -> DeclaredNoise {
         let largest = |of: fn(&ReadingRules) -> f64| {
-            self.axes
-                .iter()
-                .map(|axis| of(&axis.rules))
-                .fold(0.0, f64::max)
+            let lateral = self.axes.iter().filter(|axis| axis.axial.is_none());
+            lateral.map(|axis| of(&axis.rules)).fold(0.0, f64::max)
         };
         DeclaredNoise {
             force: largest(|rules| rules.noise),

@@ -309,8 +309,7 @@ pub fn warn(
         });
     }
     // Neither band nor pre-test check are those of an axial axis.
-    let is_lateral = |axis: &usize| link.axes.get(*axis).is_none_or(|axis| axis.axial.is_none());
-    let axes = 0..axes.filter(is_lateral).count();
+    let axes = 0..link.lateral_axes();
     let coarsest = axes
         .clone()
         .map(|axis| link.readings_of(axis).resolution)

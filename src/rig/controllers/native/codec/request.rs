@@ -73,7 +73,10 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
         }
         Request::Force(axes) => {
             several(axes.len());
-            let axes: Vec<String> = axes.iter().map(control_of).collect::<Option<_>>()?;
+            let axes: Vec<String> = axes
+                .iter()
+                .map(|axis| control_of(*axis))
+                .collect::<Option<_>>()?;
             write!(out, ">FORCE {sequence} {}", axes.join(" "))
         }
         Request::Move { id, targets, speed } => {
@@ -118,7 +121,7 @@ fn bounds_of(axis: &AxisBounds) -> Option<String> {
 }
 
 /// `rate tolerance`; zeros for an axis that holds displacements.
-fn control_of(axis: &Option<AxialAxis>) -> Option<String> {
+fn control_of(axis: Option<AxialAxis>) -> Option<String> {
     let (rate, tolerance) = axis.map_or((0.0, 0.0), |axis| (axis.rate, axis.tolerance));
     Some(format!("{} {}", force(rate)?, force(tolerance)?))
 }

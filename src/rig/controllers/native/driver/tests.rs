@@ -507,7 +507,7 @@ fn targets_of_an_axis_in_force_control_are_forces() {
         [0.0, 26_250.0],
         "HELLO told it before FORCE"
     );
-    let going = device.encode(&[0.005, 30_000.1254], 1e-3).unwrap();
+    let going = device.encode(&[0.005, 30_000.125_4], 1e-3).unwrap();
     assert_eq!(going.targets, [0.005, 30_000.125]);
     script_reply(&port, "ACK 4 7F3A MOVING");
     device.start(&going).unwrap();
