@@ -55,7 +55,7 @@ pub struct Model {
     /// The safe state of the rig is to unload.
     pub unloads: bool,
     /// Number of axial axes, the last ones: their readings are beside the others.
-    axial: usize,
+    pub axial: usize,
     /// The last reading, also at rest and during a move: \[m\], \[N\], one entry per axis.
     pub live: Option<Feedback>,
     /// The run has ended early: the state of the rig.

@@ -77,7 +77,7 @@ pub fn decide(
     let lines = lines.as_slice();
     let recorded = last_reading(lines)?;
     let held = last_final_hold(logged, last.seq)?;
-    let controlled = bands.controlled((&found.displacement, &found.force));
+    let controlled = bands.controlled(&found.displacement, &found.force);
     let found_position = FoundPosition {
         positions: &controlled,
         bands,
@@ -92,7 +92,7 @@ pub fn decide(
     let reference = held.as_ref().or(resumed).or(recorded.as_ref());
     if let Some((held_at, force)) = &held {
         // A later motion is not logged: the specimen has a different history.
-        found_position.expect_at(&bands.controlled((held_at, force)))?;
+        found_position.expect_at(&bands.controlled(held_at, force))?;
     }
     may_move(
         &place,
@@ -133,7 +133,7 @@ fn last_target(
         place,
         sends: None,
     };
-    let controlled = |(x, r): &Measured| found.bands.controlled((x, r));
+    let controlled = |(x, r): &Measured| found.bands.controlled(x, r);
     let recorded = last_reading(lines)?.as_ref().map(controlled);
     let axes = found.positions.len();
     if let Some(ResumeBody {
@@ -329,6 +329,6 @@ fn position_before(lines: &[Line], axes: usize, bands: &Bands) -> Result<Vec<f64
     let first = lines.iter().find(|line| line.kind == EntryKind::Sample);
     first.map_or_else(
         || Ok(vec![0.0; axes]),
-        |line| body::<SampleBody>(line).map(|sample| bands.controlled((&sample.x, &sample.r))),
+        |line| body::<SampleBody>(line).map(|sample| bands.controlled(&sample.x, &sample.r)),
     )
 }

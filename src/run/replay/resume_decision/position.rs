@@ -66,7 +66,7 @@ impl Bands {
     }
 
     /// What the controllers hold at a measured position: displacements \[m\], then the forces of axial axes \[N\].
-    pub(super) fn controlled(&self, (displacement, force): (&[f64], &[f64])) -> Vec<f64> {
+    pub(super) fn controlled(&self, displacement: &[f64], force: &[f64]) -> Vec<f64> {
         let lateral = displacement.len().saturating_sub(self.axial);
         let axial = force.get(lateral..).unwrap_or_default();
         displacement[..lateral]
@@ -141,7 +141,7 @@ pub(super) fn may_move(
     bands: &Bands,
     accept_relaxation: bool,
 ) -> Result<(), ResumeRefusal> {
-    let controlled = bands.controlled((&found.displacement, &found.force));
+    let controlled = bands.controlled(&found.displacement, &found.force);
     let position = FoundPosition {
         positions: &controlled,
         bands,
