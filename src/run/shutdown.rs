@@ -10,11 +10,11 @@ use psd_plan::record::{EventKind, Outcome};
 use psd_plan::{Interval, Limits, Plan, RealLink, SafeState};
 use psd_rig::{FinalHold, RigFault};
 use psd_text::units::Dimension;
-use psd_text::units::display::{plain, readable};
+use psd_text::units::display::{plain, readable, stated};
 
 impl Session<'_> {
     /// Holds the rig, and unloads it if unloading is its safe state and the operator is not at the rig. Also unloads it if the operator
-    /// requests it.
+    /// requests it. Under an axial load nothing is unloaded.
     pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
         let halted = self.end(stop);
         let Some(link) = plan.rig.link.as_real() else {
@@ -25,8 +25,10 @@ impl Session<'_> {
         let alone = declared && !self.attended && !stop.is_a_persons();
         // A rig that the operator held during a move has since been read at rest: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
+        let is_loaded = self.guard.axial_loads().next().is_some();
         if held
             && sound
+            && !is_loaded
             && self.extend_limits(link, halted.as_ref())
             && (alone || self.may_unload(plan, halted.as_ref()))
         {
@@ -40,8 +42,25 @@ impl Session<'_> {
         let halted = self.guard.halt();
         self.event(stop.event_kind(), stop.to_string());
         self.report_final_hold(halted.as_ref());
+        self.report_axial_loads();
         self.leave();
         halted
+    }
+
+    /// Reports the axial loads that a run leaves on a real specimen.
+    pub(crate) fn report_axial_loads(&mut self) {
+        if self.guard.datum().is_none() {
+            return;
+        }
+        let loads: Vec<(usize, f64)> = self.guard.axial_loads().collect();
+        for (storey, force) in loads {
+            let text = format!(
+                "the axial load of storey {} was not taken off: its target is {}",
+                storey + 1,
+                stated(force, Dimension::FORCE)
+            );
+            self.event(EventKind::Note, text);
+        }
     }
 
     /// Reports the position at which the rig holds, or that the hold is not confirmed.
