@@ -257,6 +257,7 @@ fn an_amendment_holds_from_its_resumption_on() {
         ..RigBody::of(&rig)
     };
     let bands = Bands {
+        axial: 0,
         displacement: vec![1e-9],
         force: vec![1e-6],
         stiffness: vec![Interval::ALL],
