@@ -8,7 +8,7 @@ psd_text::codes! {
     E650 E651 E653 E654 E655 E666 E678
     // 7: plans that run but are not advisable
     W701 W702 W703 W704 W705 W706 W710 W712 W713 W714 W716 W718 W719 W720 W721 W722 W724 W726
-    W730 W737 W740 W741
+    W730 W737 W740 W741 W743
 }
 
 /// Every code of the program, in order.

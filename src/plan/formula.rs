@@ -211,6 +211,28 @@ impl Formula {
         }
     }
 
+    /// Adds every result that the formula reads, with the entry of a list that it reads alone.
+    pub fn collect_entries(&self, into: &mut Vec<(ResultReference, Option<usize>)>) {
+        match self {
+            Self::Constant(_) | Self::Stated(_) | Self::CriticalTimeStep => {}
+            Self::Result(reference) => into.push((*reference, None)),
+            Self::Index(inner, entry) => match &**inner {
+                Self::Result(reference) => into.push((*reference, Some(*entry))),
+                inner => inner.collect_entries(into),
+            },
+            Self::Negate(inner) => inner.collect_entries(into),
+            Self::Binary(_, left, right) => {
+                left.collect_entries(into);
+                right.collect_entries(into);
+            }
+            Self::List(parts) | Self::Call(_, parts) => {
+                for part in parts {
+                    part.collect_entries(into);
+                }
+            }
+        }
+    }
+
     /// Adds the source of every number that is stated with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
         match self {

@@ -128,8 +128,8 @@ pub trait Results: Sync {
         0.0
     }
 
-    /// What is known of the uncertainty of the result; by default it is exact.
-    fn uncertainty_status(&self, _: ResultReference) -> UncertaintyStatus {
+    /// What is known of the uncertainty of the result, or of one entry of a list; by default it is exact.
+    fn uncertainty_status(&self, _: ResultReference, _: Option<usize>) -> UncertaintyStatus {
         UncertaintyStatus::Exact
     }
 }
@@ -194,8 +194,12 @@ impl Results for Moved<'_> {
         self.results.degrees(source)
     }
 
-    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
-        self.results.uncertainty_status(reference)
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
+        self.results.uncertainty_status(reference, entry)
     }
 }
 

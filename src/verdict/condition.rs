@@ -104,12 +104,13 @@ fn in_percent(condition: &Condition) -> bool {
 
 /// What is known of the uncertainty of the results that the condition reads.
 fn uncertainty_status(condition: &Condition, record: &dyn Results) -> UncertaintyStatus {
-    let mut references = Vec::new();
-    condition.collect_references(&mut references);
-    references
-        .into_iter()
-        .filter(|reference| reference.part == ResultPart::Value)
-        .map(|read| record.uncertainty_status(read))
+    let mut read = Vec::new();
+    for formula in condition.formulas() {
+        formula.collect_entries(&mut read);
+    }
+    read.into_iter()
+        .filter(|(reference, _)| reference.part == ResultPart::Value)
+        .map(|(reference, entry)| record.uncertainty_status(reference, entry))
         .fold(UncertaintyStatus::Exact, UncertaintyStatus::and)
 }
 

@@ -42,8 +42,12 @@ impl Results for Declared<'_> {
         self.results.moved(source)
     }
 
-    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
-        let own = self.results.uncertainty_status(reference);
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
+        let own = self.results.uncertainty_status(reference, entry);
         let partial =
             !self.undeclared.is_empty() && !self.results.contributions(reference).is_empty();
         if !partial {

@@ -153,8 +153,12 @@ impl Results for Grown<'_> {
         self.results.moved(source)
     }
 
-    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
-        self.results.uncertainty_status(reference)
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
+        self.results.uncertainty_status(reference, entry)
     }
 }
 

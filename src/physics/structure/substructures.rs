@@ -456,6 +456,14 @@ impl Assemblies {
         }
     }
 
+    /// Whether the displacement of a floor is the sum of measured ones alone, or the element is on the rig.
+    #[must_use]
+    pub fn is_measured(&self, floor: usize) -> bool {
+        let first = self.elements.as_ref().map_or(0, |_| floor);
+        let mut supports = self.supports[first..=floor].iter();
+        supports.all(|support| *support != Support::Computed)
+    }
+
     /// The axes of which the measured displacement of a floor is the sum, each with the factor from the rig to the prototype. An element
     /// has its own deformation.
     #[must_use]

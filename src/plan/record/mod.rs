@@ -249,9 +249,9 @@ impl NamedResult {
         self.withheld.get_or_insert_with(|| reason.to_owned());
     }
 
-    /// What is known of the uncertainty of a result, for a procedure of this kind.
+    /// What is known of the uncertainty of a result, or of one entry of a list, for a procedure of this kind.
     #[must_use]
-    pub fn uncertainty_status(&self, kind: &str) -> UncertaintyStatus {
+    pub fn uncertainty_status(&self, kind: &str, entry: Option<usize>) -> UncertaintyStatus {
         let words: Vec<&str> = kind.split(' ').collect();
         let measured = block_of_words(&words)
             .and_then(|block| block.result(self.name))
@@ -270,10 +270,12 @@ impl NamedResult {
             ResultValue::Number { value, uncertainty } => value.is_some() && uncertainty.is_none(),
             ResultValue::List(values) => {
                 let known = self.entry_uncertainties();
-                let lacks = |(entry, value): (usize, &f64)| {
-                    value.is_finite() && known.get(entry).is_none_or(Option::is_none)
+                let lacks = |(at, value): (usize, &f64)| {
+                    value.is_finite() && known.get(at).is_none_or(Option::is_none)
                 };
-                values.iter().enumerate().any(lacks)
+                let read = |at: usize| entry.is_none_or(|entry| entry == at);
+                let mut values = values.iter().enumerate().filter(|(at, _)| read(*at));
+                values.any(lacks)
             }
         };
         if lacks {
@@ -322,12 +324,16 @@ impl Results for Record {
             .unwrap_or(f64::INFINITY)
     }
 
-    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
         let found = self.procedures.get(reference.procedure.0);
         found
             .and_then(|procedure| Some((procedure.result(reference.name)?, procedure.kind)))
             .map_or(UncertaintyStatus::Exact, |(result, kind)| {
-                result.uncertainty_status(kind)
+                result.uncertainty_status(kind, entry)
             })
     }
 }

@@ -49,7 +49,11 @@ impl Plan {
             ("specimen mass", mass_of_one || mass_of_frame),
             (
                 "weights of the floors",
-                frame.is_some_and(|frame| !frame.axial_loads().is_empty()),
+                frame.is_some_and(|frame| frame.computes_p_delta()),
+            ),
+            (
+                "axial load and its share of P-Δ",
+                frame.is_some() && self.rig.axial_axes(&self.limits).next().is_some(),
             ),
         ];
         let own = own

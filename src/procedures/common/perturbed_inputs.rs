@@ -101,7 +101,7 @@ pub(crate) fn uncertain_inputs(
         formula.collect_references(&mut references);
     }
     for reference in &references {
-        if let UncertaintyStatus::Withheld(why) = results.uncertainty_status(*reference) {
+        if let UncertaintyStatus::Withheld(why) = results.uncertainty_status(*reference, None) {
             return Err(why);
         }
     }

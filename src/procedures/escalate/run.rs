@@ -274,14 +274,18 @@ impl Results for OfImpact<'_> {
         self.before.degrees(source)
     }
 
-    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
         if reference.procedure == self.own {
             return NamedResult::of(&self.results, reference.name)
                 .map_or(UncertaintyStatus::Exact, |result| {
-                    result.uncertainty_status(IMPACT)
+                    result.uncertainty_status(IMPACT, entry)
                 });
         }
-        self.before.uncertainty_status(reference)
+        self.before.uncertainty_status(reference, entry)
     }
 }
 

@@ -1,7 +1,7 @@
 //! `preload NAME { … }`, and the order of the procedures beside it. In: its block, the rig, all procedures. Out: its parameters, and the
 //! axial load of the storeys.
 
-use crate::codes::E678;
+use crate::codes::{E678, W743};
 use psd_language::check::checker::Checker;
 use psd_language::check::rig::CheckedRig;
 use psd_plan::procedures::preload::block as schema;
@@ -10,6 +10,8 @@ use psd_plan::schema::rig as rig_schema;
 use psd_plan::{AxialAxis, Frame, Limits, Preload, Procedure, ProcedureKind, Specimen};
 use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 pub fn preload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let storey = checker.count(block, schema::STOREY.name);
@@ -87,6 +89,54 @@ struct FallsUnderAxialLoad {
     span: Span,
 }
 
+/// In numbers of the prototype: the axial load on the rig, and the weight that the storey carries.
+#[derive(Violation)]
+#[violation(
+    W743,
+    "the axial load of storey {storey} is that of {load}, {times} times the weight that it carries, {weight}"
+)]
+#[help(
+    "check `force` and `gravity`: the load on the rig is the weight times λ_f/n, here {} (a load by intention needs no change)",
+    on_the_rig
+)]
+struct AnotherLoadThanItsWeight {
+    storey: usize,
+    load: String,
+    times: String,
+    weight: String,
+    on_the_rig: String,
+    #[label("axial load")]
+    span: Span,
+}
+
+/// Of axial load and weight: beyond it one of them is probably a number of the other scale.
+const OTHER: f64 = 1.5;
+
+/// A load of the prototype on a specimen at a scale, or the reverse.
+fn warn_of_another_load(checker: &mut Checker, frame: &Frame, preload: &Preload, span: Span) {
+    let Some(storey) = frame.storeys.get(preload.storey) else {
+        return;
+    };
+    let is_weighed = frame.storeys.iter().any(|storey| storey.gravity > 0.0);
+    let weight = frame.axial_loads().get(preload.storey).copied();
+    let Some(weight) = weight.filter(|weight| is_weighed && *weight > 0.0) else {
+        return;
+    };
+    let scale = storey.part.scale().forces();
+    let load = preload.force * scale;
+    let times = load / weight;
+    if times > OTHER || times < 1.0 / OTHER {
+        checker.report(AnotherLoadThanItsWeight {
+            storey: preload.storey + 1,
+            load: readable(load, Dimension::FORCE),
+            times: stated(times, Dimension::NUMBER),
+            weight: readable(weight, Dimension::FORCE),
+            on_the_rig: readable(weight / scale, Dimension::FORCE),
+            span,
+        });
+    }
+}
+
 /// Checks the axial loads of a plan, and enters each in its storey: the P-Δ in the reading of the rig is not computed a second time.
 pub(crate) fn check_axial_loads(
     checker: &mut Checker,
@@ -125,16 +175,17 @@ pub(crate) fn check_axial_loads(
                     *loaded |= axis.storey == preload.storey;
                 }
                 let frame = specimens.get_mut(on_rig).and_then(Option::as_mut);
-                if let Some(frame) = frame.and_then(|specimen| specimen.frame.as_mut())
-                    && let Some(ratio) = enter(frame, &axes[axis], preload.force)
-                {
+                if let Some(frame) = frame.and_then(|specimen| specimen.frame.as_mut()) {
                     let span = checker.value_or_head(*block, schema::FORCE.name);
-                    let ratio = format!("{ratio:.3}");
-                    return checker.report(FallsUnderAxialLoad {
-                        storey,
-                        ratio,
-                        span,
-                    });
+                    if let Some(ratio) = enter(frame, &axes[axis], preload.force) {
+                        let ratio = format!("{ratio:.3}");
+                        return checker.report(FallsUnderAxialLoad {
+                            storey,
+                            ratio,
+                            span,
+                        });
+                    }
+                    warn_of_another_load(checker, frame, preload, span);
                 }
             }
             ProcedureKind::Inspect { .. } => {}

@@ -177,12 +177,14 @@ fn unload(
         uncertain.unloaded(&mut rest, &unloading, steps);
         return Ok(rest);
     }
-    let (_, broken) = session.load_axially(None, 0.0)?;
+    let (without, broken) = session.load_axially(None, 0.0)?;
     if let Some(stop) = broken {
         return Err(stop);
     }
-    let unloading = of_frame(&without_axial_loads(frame_of(whole, plan.specimen)?))?;
     let first = steps.last().map_or(0, |step| step.step) + 1;
+    let wall_time = session.guard.time();
+    session.measured_all(first, wall_time, &without)?;
+    let unloading = of_frame(&without_axial_loads(frame_of(whole, plan.specimen)?))?;
     let mut last = Vec::new();
     let rested = to_rest(unloading.clone(), within, speed, first, session, &mut last);
     let rested = rested.map(|mut rest| {

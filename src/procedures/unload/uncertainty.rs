@@ -167,6 +167,7 @@ impl UncertainRun<'_> {
         let of_displacement = floors().map(|floor| some(positions(floor))).collect();
         let of_force = floors().map(|floor| some(cells(floor))).collect();
         (rest.of_displacement, rest.of_force) = (of_displacement, of_force);
+        rest.on_computed = floors().filter(|floor| !axes.is_measured(*floor)).collect();
     }
 }
 

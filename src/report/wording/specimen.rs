@@ -11,7 +11,7 @@ use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{
     AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
-    Mechanism, Part, Pinching, Plan, Portal, Scale, Sections, Unloading,
+    Mechanism, Part, Pinching, Plan, Portal, ProcedureKind, Scale, Sections, Unloading,
 };
 use psd_text::units::Dimension;
 use psd_text::units::display::{significant, stated};
@@ -212,12 +212,31 @@ pub fn axial_axis(plan: &Plan, axis: &AxialAxis, band: Interval, shown: Printed<
     )
 }
 
-/// The numbers of the report of a test of which a specimen has a scale. None for any other test.
+/// The numbers of the report of a test of which a specimen has a scale. None for any other test. A procedure that tests the specimen
+/// alone, without the structure, has the numbers of the rig.
 #[must_use]
-pub fn numbers(frame: &Frame) -> Option<String> {
+pub fn numbers(plan: &Plan, frame: &Frame) -> Option<String> {
     let on_the_rig = numbers_on_the_rig(frame)?;
+    let of_the_specimen = plan.procedures.iter().filter(|procedure| {
+        matches!(
+            procedure.kind,
+            ProcedureKind::StiffnessRamp(_)
+                | ProcedureKind::DampingSweep(_)
+                | ProcedureKind::Cycle(_)
+                | ProcedureKind::Move(_)
+                | ProcedureKind::Preload(_)
+        )
+    });
+    let names: Vec<String> = of_the_specimen
+        .map(|procedure| format!("{} ({})", procedure.name, procedure.kind.keyword()))
+        .collect();
+    let except = if names.is_empty() {
+        "; ".to_owned()
+    } else {
+        format!(", except those of {}; these, ", names.join(", "))
+    };
     Some(format!(
-        "results and requirements are those of the prototype; limits, calibrations and the run log are those of the rig ({on_the_rig})"
+        "results and requirements are those of the prototype{except}limits, calibrations and the run log are those of the rig ({on_the_rig})"
     ))
 }
 

@@ -209,7 +209,7 @@ impl<'a> DryRun<'a> {
                 frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
             {
                 rows.push(vec!["substructures".to_owned(), text]);
-                let numbers = specimen_text::numbers(frame);
+                let numbers = specimen_text::numbers(self.plan, frame);
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }

@@ -255,10 +255,19 @@ fn unfit(storeys: &[Storey], storey: usize, specimen: &str) -> Option<(String, &
             "write the specimen with `storeys = [storey(…)]`, also a single column",
         ));
     }
+    let below = storey.checked_sub(1).and_then(|below| storeys.get(below));
     let Some(storey) = storeys.get(storey) else {
         let problem = format!("frame `{specimen}` has no such storey");
         return Some((problem, "name a tested storey"));
     };
+    if let (Part::Tested { apart: false, .. }, Some(Part::Tested { .. })) =
+        (storey.part, below.map(|below| below.part))
+    {
+        return Some((
+            "it stands on a tested storey, which would carry the load too".to_owned(),
+            "load the lowest storey of the specimen, or write `part: tested(apart: true)` in this one",
+        ));
+    }
     let scale = match storey.part {
         Part::Tested { scale, .. } => scale,
         Part::Computed => {

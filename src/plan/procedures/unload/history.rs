@@ -66,6 +66,8 @@ pub struct Rest {
     pub of_displacement: Vec<Vec<Contribution>>,
     /// The same for the remaining force \[N\].
     pub of_force: Vec<Vec<Contribution>>,
+    /// The floors that stand on a computed storey: the uncertainty of their positions is not known.
+    pub on_computed: Vec<usize>,
     /// Why it is not the position of zero force; the uncertainty of the position is then withheld.
     pub incomplete: Option<String>,
 }
@@ -123,14 +125,22 @@ impl Rest {
     /// The uncertainty contributions of position \[m\] and force \[N\] of one floor.
     #[must_use]
     pub fn contributions_at_floor(&self, floor: usize) -> [Vec<Contribution>; 2] {
-        [&self.of_displacement, &self.of_force]
-            .map(|floors| floors.get(floor).cloned().unwrap_or_default())
+        let position = if self.on_computed.contains(&floor) {
+            None
+        } else {
+            self.of_displacement.get(floor)
+        };
+        [position, self.of_force.get(floor)].map(|parts| parts.cloned().unwrap_or_default())
     }
 
     /// The uncertainty contributions of the positions \[m\]: an entry per floor.
     #[must_use]
     pub fn position_contributions(&self) -> Vec<Contribution> {
-        entries(self.of_displacement.iter().cloned())
+        let floors = 0..self.of_displacement.len();
+        entries(floors.map(|floor| {
+            let [position, _] = self.contributions_at_floor(floor);
+            position
+        }))
     }
 
     /// The uncertainty contributions of the remaining forces \[N\]: an entry per floor.

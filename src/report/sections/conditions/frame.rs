@@ -5,12 +5,12 @@ use crate::report::document::{Block, Column, Figure, Table, Text};
 use crate::report::figures::structure;
 use crate::report::number::{self, percent};
 use crate::report::wording::{conditions as wording, specimen as specimen_text};
-use psd_plan::scaled::at_scale;
-use psd_plan::{Element, Frame, Ground, Part};
+use psd_plan::scaled::{at_scale, numbers_on_the_rig};
+use psd_plan::{Element, Frame, Ground, Part, Plan};
 use psd_text::units::Dimension;
 
 /// Storeys from the ground up, or the files of the matrices.
-pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
+pub(crate) fn structure(plan: &Plan, frame: &Frame, body: &mut Vec<Block>) {
     let mut rows = vec![
         ("degrees of freedom", frame.degrees_of_freedom().to_string()),
         (
@@ -30,7 +30,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     }
     let substructures = specimen_text::substructures(frame);
     rows.extend(substructures.clone().map(|text| ("substructures", text)));
-    let numbers = specimen_text::numbers(frame);
+    let numbers = specimen_text::numbers(plan, frame);
     let is_scaled = numbers.is_some();
     rows.extend(numbers.map(|text| ("numbers", text)));
     body.push(described(rows));
@@ -121,7 +121,7 @@ fn elements(frame: &Frame) -> Block {
             specimen_text::words(&element.behaviour, &number::stated).into(),
         ]
     };
-    let is_scaled = specimen_text::numbers(frame).is_some();
+    let is_scaled = numbers_on_the_rig(frame).is_some();
     let behaviour = if is_scaled {
         "Behaviour, on the rig if tested"
     } else {

@@ -66,7 +66,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     for specimen in &run.plan.specimens {
         body.push(Block::part(as_stated(wording::specimen(&specimen.name))));
         match &specimen.frame {
-            Some(frame) => frame::structure(frame, body),
+            Some(frame) => frame::structure(run.plan, frame, body),
             None => body.push(specimen_table(
                 specimen,
                 run.plan.rig.link.as_real().is_none(),

@@ -23,7 +23,7 @@ pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
     let specimens = run.plan.specimens.iter();
     let frames = || specimens.clone().filter_map(|it| it.frame.as_ref());
     let substructures = frames().filter_map(specimen_text::substructures);
-    let numbers = frames().filter_map(specimen_text::numbers);
+    let numbers = frames().filter_map(|frame| specimen_text::numbers(run.plan, frame));
     rows.chain(substructures.map(|text| (wording::SUBSTRUCTURES.into(), text.into())))
         .chain(numbers.map(|text| (wording::NUMBERS.into(), text.into())))
         .chain([(wording::PLAN.into(), plan(run))])
