@@ -155,7 +155,7 @@ impl Shaken<'_> {
         let mut found: Vec<Vec<f64>> = Vec::new();
         for row in lines {
             let step: usize = row[step].parse().unwrap();
-            if step == 0 || step % 10 > 0 {
+            if step == 0 || !step.is_multiple_of(10) {
                 continue;
             }
             found.resize(step / 10, Vec::new());
