@@ -5,7 +5,6 @@ use crate::procedures;
 use crate::procedures::facts::Tests;
 use psd_language::check::checker::Checker;
 use psd_language::check::rig::{CheckedRig, axes};
-use psd_language::check::wording::with_article;
 use psd_language::codes::E671;
 use psd_plan::schema::Kind;
 use psd_plan::schema::procedures::SPECIMEN;
@@ -13,6 +12,7 @@ use psd_plan::schema::rig::AXES;
 use psd_plan::{Frame, Procedure, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+use psd_text::suggest::with_article;
 
 /// Every procedure; None for those with an error.
 pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use super::budget::coverage_factor;
 use super::run::Run;
+use super::sections::requirements::{mark, prints_mark};
 use super::status::{ReportStatus, deviations};
-use super::wording::reproductions as wording;
+use super::wording::{reproductions as wording, terminal};
 use super::{number, summary};
 use crate::verdict::{ConditionOutcome, ReproductionOutcome, Verdict};
 use psd_plan::DecisionRule;
@@ -46,7 +47,8 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         .assessment
         .requirements
         .iter()
-        .map(|requirement| {
+        .zip(&run.plan.requirements)
+        .map(|(requirement, planned)| {
             let name = one_line(&requirement.label);
             let Some(governing) = summary::governing(requirement) else {
                 return [
@@ -57,7 +59,11 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                     String::new(),
                 ];
             };
-            let value = number::value(governing).unwrap_or_else(|| "no value".to_owned());
+            let mut conditions = requirement.conditions.iter().zip(&planned.conditions);
+            let planned = conditions.find(|(condition, _)| std::ptr::eq(*condition, governing));
+            let mark = planned.map_or("", |(_, planned)| mark(run, governing, planned));
+            let value = number::value(governing).map(|value| value + mark);
+            let value = value.unwrap_or_else(|| "no value".to_owned());
             let margin = number::margin(governing).map_or_else(String::new, |margin| {
                 format!("margin {margin}{}", band(governing, run.assessment.rule))
             });
@@ -95,6 +101,9 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let _ = writeln!(text, "  decided by `psd study run`: {}", one_line(&names));
     }
     text.push_str(&decision_rule(run));
+    if prints_mark(run) {
+        let _ = writeln!(text, "  {}", terminal::MARKED);
+    }
     for deviation in deviations::of_run(run, true) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }

@@ -1,4 +1,4 @@
-//! The suggestion "did you mean": the nearest of a closed set of names.
+//! Words of messages: the suggestion "did you mean", the nearest of a closed set of names; a word with its article.
 
 /// The candidate nearest to `written`, if it is near enough to be a typing error.
 #[must_use]
@@ -32,6 +32,17 @@ pub fn nearest<'a>(
         .filter(|(distance, _)| *distance <= allowed)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// `an impact`, `a shake`: words with their article.
+#[must_use]
+pub fn with_article(words: &str) -> String {
+    let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {words}")
 }
 
 #[cfg(test)]

@@ -241,3 +241,58 @@ fn a_name_of_no_number_is_an_error() {
         assert_eq!(errors[0].code, code, "{value}");
     }
 }
+
+const STOREYS: &str = "specimen frame {
+  storeys = [
+    storey(mass: 2 t, stiffness: 3 MN/m),
+    storey(mass: 1.5 t, part: computed, behaviour: bilinear(stiffness: 2 MN/m, yield_force: 10 kN, post_yield_ratio: 5 %)),
+  ]
+}
+
+ground quake { file = \"quake.csv\" }
+
+shake test { ground = quake }
+
+require \"drift\" max(test.max_drift) < 1 m
+";
+
+/// An entry of a list has its number, from 1.
+#[test]
+fn a_number_of_a_storey_is_set_by_the_number_of_the_storey() {
+    let checked = |text: &str, settings: &[(&str, &str)]| {
+        let settings = settings.iter();
+        let options = Options {
+            settings: settings
+                .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+                .collect(),
+            ..Options::default()
+        };
+        let mut parsed = ParsedPlan::parse("plan.psd", text, &files(FILES), &options);
+        parsed.check(&files(FILES))
+    };
+    let set = checked(
+        STOREYS,
+        &[
+            ("frame.storeys.1.mass", "2.5 t"),
+            ("frame.storeys.2.behaviour.yield_force", "12 kN"),
+        ],
+    );
+    let written = STOREYS.replace("2 t,", "2.5 t,").replace("10 kN", "12 kN");
+    let written = checked(&written, &[]);
+    assert_eq!(as_run(set.plan.unwrap()), as_run(written.plan.unwrap()));
+    for name in [
+        "frame.storeys",
+        "frame.storeys.1",
+        "frame.storeys.0.mass",
+        "frame.storeys.3.mass",
+        "frame.storeys.mass",
+        "frame.storeys.1.stifness",
+    ] {
+        let codes: Vec<Code> = checked(STOREYS, &[(name, "1 kg")])
+            .diagnostics
+            .iter()
+            .map(|error| error.code)
+            .collect();
+        assert_eq!(codes, [E214], "{name}");
+    }
+}

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::check::wording::{meant, one_of, with_article};
+use crate::check::wording::{meant, one_of};
 use crate::codes::{E201, E208, E212};
 use crate::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
 use crate::syntax::control;
@@ -11,6 +11,7 @@ use psd_plan::formula::ProcedureId;
 use psd_plan::schema::{self, BLOCKS, BlockKind, ITEM_WORDS, Kind, Naming};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{FileId, Span, Spanned};
+use psd_text::suggest::with_article;
 use psd_text::units::Quantity;
 
 /// A block of a kind that this version knows.

@@ -2,6 +2,7 @@
 
 use crate::syntax::ast::Ident;
 use psd_plan::schema::{BlockKind, SYNONYMS};
+use psd_text::suggest::with_article;
 use psd_text::units::{Dimension, display};
 
 /// `one axis`, `3 axes`
@@ -75,16 +76,6 @@ pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -
         None if known.is_empty() => "remove it".to_owned(),
         None => format!("known here: {}", one_of(known)),
     }
-}
-
-/// `an impact`, `a shake`: words with their article.
-pub fn with_article(words: &str) -> String {
-    let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        "an"
-    } else {
-        "a"
-    };
-    format!("{article} {words}")
 }
 
 /// "a length", "an energy", "a value in kg/m"

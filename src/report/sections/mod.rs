@@ -10,7 +10,7 @@ mod plan;
 mod prediction;
 mod provenance;
 mod reproductions;
-mod requirements;
+pub(crate) mod requirements;
 pub(crate) mod results;
 mod statements;
 mod title_page;

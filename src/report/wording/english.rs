@@ -12,6 +12,10 @@ wording! {
             determine it. U is then the largest change found, and its coverage may differ from 95\u{a0}%.";
     }
 
+    mod terminal {
+        MARKED = "† estimate: strongly non-linear, or not determined by the measured path; U is the largest change found";
+    }
+
     mod title_page {
         KIND = "Test report: pseudo-dynamic test";
         KIND_SIMULATION = "Simulation of a pseudo-dynamic test";
@@ -342,6 +346,7 @@ wording! {
     mod conditions {
         TITLE = "Conditions";
         STRUCTURE = "The structure: tested storeys (solid), computed storeys (dashed), floors with their masses, axes of the rig.";
+        STRUCTURE_OF_ELEMENTS = "The structure: tested elements (solid), computed elements and stiffness matrix K (dashed), degrees of freedom with their masses, axes of the rig.";
         NOT_MEASURED = " · stated, not measured";
         FROM_A_FILE = " · from a file of the plan";
         LIMITS = "Limits";

@@ -13,6 +13,7 @@ use psd_plan::{
     AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
     Mechanism, Part, Pinching, Plan, Portal, ProcedureKind, Scale, Sections, Unloading,
 };
+use psd_text::suggest::with_article;
 use psd_text::units::Dimension;
 use psd_text::units::display::{significant, stated};
 
@@ -174,8 +175,8 @@ pub fn assumed(frame: &Frame) -> String {
         (
             has(|part| part.scale().represents > 1.0),
             format!(
-                "The equal parts of {} {word} behave alike: one of them is on the rig.",
-                article(word)
+                "The equal parts of {} behave alike: one of them is on the rig.",
+                with_article(word)
             ),
         ),
         (frame.has_axial_load(), AXIAL_LOAD_IN_THE_READING.to_owned()),
@@ -183,11 +184,6 @@ pub fn assumed(frame: &Frame) -> String {
     let sentences = assumed.into_iter().filter(|(holds, _)| *holds);
     let sentences: Vec<String> = sentences.map(|(_, sentence)| sentence).collect();
     sentences.join(" ")
-}
-
-/// `a storey`, `an element`.
-fn article(word: &str) -> &'static str {
-    if word.starts_with('e') { "an" } else { "a" }
 }
 
 const AXIAL_LOAD_IN_THE_READING: &str = "The share of the P-Δ of an axial load that is in the lateral reading is stated and was not measured.";

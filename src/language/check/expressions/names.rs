@@ -6,7 +6,7 @@ use crate::check::declarations::specimen::{self, frame};
 use crate::check::declarations::striker;
 use crate::check::scope::Meaning;
 use crate::check::violations::{EventWanted, NeedsTheRun};
-use crate::check::wording::{owner, suggestion, with_article};
+use crate::check::wording::{owner, suggestion};
 use crate::codes::{E203, E206, E304, E403, E641};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
@@ -16,6 +16,7 @@ use psd_plan::schema::study::PROBABILITY;
 use psd_plan::schema::{self, BlockKind, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+use psd_text::suggest::with_article;
 use psd_text::units::Dimension;
 
 /// A result of a run that does not unload, with the name that belongs to a run that does, or the reverse.

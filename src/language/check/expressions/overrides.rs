@@ -1,5 +1,5 @@
-//! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`. In: the name and the
-//! declarations. Out: the position at which the plan writes its value, or why there is none; and the values given from outside for such places.
+//! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`, or one of an entry of
+//! a list, counted from 1, such as `frame.storeys.1.mass`. In: the name and the declarations. Out: the position at which the plan writes its value, or why there is none; and the values given from outside for such places.
 
 use std::collections::BTreeMap;
 
@@ -253,8 +253,9 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
             field,
             written,
         }),
-        Some((field, _))
-            if matches!(field.ty, FieldType::Quantities(_) | FieldType::Choices(_)) =>
+        Some((field, written))
+            if matches!(field.ty, FieldType::Quantities(_) | FieldType::Choices(_))
+                && matches!(written.kind, ExprKind::List { .. } | ExprKind::Range { .. }) =>
         {
             no_field(NoField::List)
         }
@@ -274,18 +275,25 @@ fn is_number(field: &Field, written: &Expr) -> bool {
     }
 }
 
-/// The argument `name` of the variant that is the value of a field. `outer`: the variants of the field itself, which an inner model
-/// shares.
+/// The argument `name` of the variant that is the value of a field, or the entry with this number. `outer`: the variants of the field
+/// itself, which an inner model shares.
 fn inside<'a>(
     field: &'static Field,
     written: &'a Expr,
     outer: &mut Option<&'static [Variant]>,
     name: &str,
 ) -> Option<(&'static Field, &'a Expr)> {
-    if let FieldType::Choice(variants) = field.ty {
-        *outer = Some(variants);
-    } else if !matches!(field.ty, FieldType::Inner) {
-        return None;
+    match field.ty {
+        FieldType::Choice(variants) => *outer = Some(variants),
+        FieldType::Choices(variants) => {
+            *outer = Some(variants);
+            if let ExprKind::List { items, .. } = &written.kind {
+                let number: usize = name.parse().ok()?;
+                return Some((field, items.get(number.checked_sub(1)?)?));
+            }
+        }
+        FieldType::Inner => {}
+        _ => return None,
     }
     let arguments = arguments_of((*outer)?, written);
     arguments
@@ -333,10 +341,15 @@ fn inputs_of(scope: &Scope, block: usize) -> Vec<String> {
             return;
         }
         let variants = match field.ty {
-            FieldType::Choice(variants) => variants,
+            FieldType::Choice(variants) | FieldType::Choices(variants) => variants,
             FieldType::Inner => outer.unwrap_or(&[]),
             _ => return,
         };
+        if let (FieldType::Choices(_), ExprKind::List { items, .. }) = (field.ty, &written.kind) {
+            for (number, item) in (1..).zip(items) {
+                add(&format!("{path}.{number}"), field, item, outer, into);
+            }
+        }
         for (argument, written) in arguments_of(variants, written) {
             let path = format!("{path}.{}", argument.name);
             add(&path, argument, written, Some(variants), into);

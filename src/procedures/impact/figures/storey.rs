@@ -4,10 +4,11 @@
 use super::charts;
 use crate::procedures::common::limit_lines::limits_on;
 use crate::procedures::shake;
+use crate::procedures::shake::figures::charts::entries_of;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{ImpactHistory, StruckFrame};
+use psd_plan::record::{Floors, ImpactHistory, StruckFrame};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
@@ -35,8 +36,9 @@ pub(crate) fn chart(
             let mut chart = shaded(history, shake::figures::charts::displacement(&frame.floors));
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
+            let floor = entries_of(frame.floors.first().is_some_and(Floors::has_elements));
             let caption = format!(
-                "{name}: displacement of each floor, and of the striker while near floor {struck}, against simulated time{}.",
+                "{name}: displacement of each {floor}, and of the striker while near {floor} {struck}, against simulated time{}.",
                 shake::figures::charts::chosen_floors(&frame.floors)
             );
             (chart, caption)

@@ -5,7 +5,7 @@ use super::{contact_log, contact_work, energy_balance};
 use crate::procedures::shake;
 use crate::procedures::stepping::energy;
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::sections::results::tracking;
+use crate::report::sections::results::{budget_table, tracking};
 use crate::report::{Run, number};
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{ImpactHistory, ProcedureRecord, StruckFrame};
@@ -156,22 +156,28 @@ fn struck_mass(run: &Run<'_>, impact: &Impact, target: &StoreyTarget) -> Option<
     ))
 }
 
-/// The energy that each storey absorbed: its shear over its drift, to the end of the run.
+/// The energy that each storey or element absorbed: its shear over its drift, or its force over its deformation, to the end of the run.
 fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let Some(result) = procedure.result(schema::STOREY_ENERGY.name) else {
         return Block::note(String::new());
     };
     let energies = result.value.list().unwrap_or_default();
     let input = procedure.number(schema::STRIKER_ENERGY.name).unwrap_or(0.0);
+    let word = budget_table::entry_kind(schema::STOREY_ENERGY.name, procedure);
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         vec![
-            format!("storey {}", storey + 1).into(),
+            format!("{word} {}", storey + 1).into(),
             shake::report::entry(result, storey),
             energy::fraction(*energy, input).into(),
         ]
     };
+    let title = if word == "element" {
+        "Energy in each element at the end of the run, ∫F dδ; the stiffness matrix has the rest"
+    } else {
+        "Energy in each storey at the end of the run, ∫V dδ"
+    };
     let columns = vec![
-        Column::words("Energy in each storey at the end of the run, ∫V dδ", 1),
+        Column::words(title, 1),
         Column::numbers("Energy"),
         Column::numbers("Fraction of striker energy"),
     ];

@@ -34,21 +34,25 @@ pub(crate) fn structure(plan: &Plan, frame: &Frame, body: &mut Vec<Block>) {
     let is_scaled = numbers.is_some();
     rows.extend(numbers.map(|text| ("numbers", text)));
     body.push(described(rows));
+    let is_hybrid = substructures.is_some();
+    if is_hybrid {
+        body.push(Block::Figure(Figure {
+            number: 0,
+            caption: if frame.elements.is_empty() {
+                wording::STRUCTURE.into()
+            } else {
+                wording::STRUCTURE_OF_ELEMENTS.into()
+            },
+            description: structure::description(frame).into(),
+            svg: structure::svg(frame),
+        }));
+    }
     if frame.storeys.is_empty() {
         if !frame.elements.is_empty() {
             body.push(elements(frame));
             body.push(Block::note(specimen_text::assumed(frame)));
         }
         return;
-    }
-    let is_hybrid = substructures.is_some();
-    if is_hybrid {
-        body.push(Block::Figure(Figure {
-            number: 0,
-            caption: wording::STRUCTURE.into(),
-            description: structure::description(frame).into(),
-            svg: structure::svg(frame),
-        }));
     }
     let behaviour = if is_scaled {
         "Behaviour, on the rig if tested"

@@ -68,12 +68,25 @@ fn conditions<'a>(run: &Run<'a>) -> impl Iterator<Item = (&'a ConditionOutcome, 
 }
 
 /// Whether a value of this section is marked as an estimate, so that its note is printed here.
-pub(super) fn prints_mark(run: &Run<'_>) -> bool {
+pub(crate) fn prints_mark(run: &Run<'_>) -> bool {
     conditions(run).any(|(condition, planned)| is_marked(run, condition, planned))
 }
 
 fn is_marked(run: &Run<'_>, condition: &ConditionOutcome, planned: &Condition) -> bool {
     condition.uncertainty.is_some() && !is_reliable(run, planned)
+}
+
+/// The mark of an estimate behind a value that has it.
+pub(crate) fn mark(
+    run: &Run<'_>,
+    condition: &ConditionOutcome,
+    planned: &Condition,
+) -> &'static str {
+    if is_marked(run, condition, planned) {
+        budget_table::MARK
+    } else {
+        ""
+    }
 }
 
 /// Whether a condition reads no result whose uncertainty is marked as an estimate.
@@ -182,11 +195,7 @@ fn row(
     if condition.wider_than_tolerance && rule == DecisionRule::Simple && decided {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);
     }
-    let mark = if is_marked(run, condition, planned) {
-        budget_table::MARK
-    } else {
-        ""
-    };
+    let mark = mark(run, condition, planned);
     let bound = Text::from(number::bound(condition));
     let bound = match (rule, number::guard_band(condition)) {
         (DecisionRule::Guarded, Some(band)) => bound.line().soft(format!("w = {band}")),
