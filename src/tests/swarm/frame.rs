@@ -114,6 +114,17 @@ impl FrameTest {
         self.members.iter().any(|member| member.yields)
     }
 
+    /// The same with every specimen at full scale.
+    pub(super) fn at_full_scale(&self) -> Self {
+        let mut test = self.clone();
+        for member in &mut test.members {
+            if let Part::Tested { scale, .. } = &mut member.part {
+                *scale = Scale::FULL;
+            }
+        }
+        test
+    }
+
     /// Stiffness at each axis of the rig while the others stand still \[N/m\].
     pub(super) fn stiffness_at_axes(&self) -> Vec<f64> {
         if self.is_whole_matrix() {
@@ -458,8 +469,8 @@ fn elements(draw: &mut Draw, floors: usize) -> Vec<Member> {
 fn load(draw: &mut Draw, floors: usize, has_elements: bool) -> Load {
     if draw.chance(0.7) {
         return Load::Shake {
-            steps: draw.between(3, 9),
-            peak: 0.01 * f64::from(draw.between(1, 5)),
+            steps: draw.between(4, 10),
+            peak: 0.02 * f64::from(draw.between(1, 6)),
         };
     }
     let floor = draw.below(floors);
