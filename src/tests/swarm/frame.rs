@@ -9,7 +9,7 @@ use psd_plan::record::{FloorMotion, History, ProcedureRecord, StruckFrame};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Contact, Element, Escalate, Frame, Ground, Impact,
     ImpactTarget, Integrator, Part, ProcedureKind, Scale, Shake, ShakeDamping, Stepping, Storey,
-    StoreyTarget, Test, Until,
+    StoreyTarget, Test, Unload, Until,
 };
 use psd_text::units::Dimension;
 
@@ -46,6 +46,8 @@ pub(super) enum Load {
         velocities: Vec<f64>,
         between: Between,
     },
+    /// To zero restoring force.
+    Unload,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +84,9 @@ impl FrameTest {
         test.loads = (0..draw.one_of(&[1, 1, 2]))
             .map(|_| load(draw, floors, has_elements))
             .collect();
+        if draw.chance(0.2) {
+            test.loads.push(Load::Unload);
+        }
         test
     }
 
@@ -268,6 +273,12 @@ impl FrameTest {
                         until: None,
                     })
                 }
+                Load::Unload => ProcedureKind::Unload(Unload {
+                    specimen: 0,
+                    stiffness: None,
+                    within: None,
+                    speed: None,
+                }),
                 Load::Impact { floor } => ProcedureKind::Impact(impact_on(*floor, stepping)),
                 Load::Escalate {
                     floor,
