@@ -9,7 +9,7 @@ use psd_plan::record::{FloorMotion, History, ProcedureRecord, StruckFrame};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Contact, Element, Escalate, Frame, Ground, Impact,
     ImpactTarget, Integrator, Part, ProcedureKind, Scale, Shake, ShakeDamping, Stepping, Storey,
-    StoreyTarget, Test, Until,
+    StoreyTarget, Test, Unload, Until,
 };
 use psd_text::units::Dimension;
 
@@ -46,6 +46,8 @@ pub(super) enum Load {
         velocities: Vec<f64>,
         between: Between,
     },
+    /// To zero restoring force.
+    Unload,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +84,9 @@ impl FrameTest {
         test.loads = (0..draw.one_of(&[1, 1, 2]))
             .map(|_| load(draw, floors, has_elements))
             .collect();
+        if draw.chance(0.2) {
+            test.loads.push(Load::Unload);
+        }
         test
     }
 
@@ -112,6 +117,17 @@ impl FrameTest {
     /// Whether a specimen has a memory.
     pub(super) fn yields(&self) -> bool {
         self.members.iter().any(|member| member.yields)
+    }
+
+    /// The same with every specimen at full scale.
+    pub(super) fn at_full_scale(&self) -> Self {
+        let mut test = self.clone();
+        for member in &mut test.members {
+            if let Part::Tested { scale, .. } = &mut member.part {
+                *scale = Scale::FULL;
+            }
+        }
+        test
     }
 
     /// Stiffness at each axis of the rig while the others stand still \[N/m\].
@@ -257,6 +273,12 @@ impl FrameTest {
                         until: None,
                     })
                 }
+                Load::Unload => ProcedureKind::Unload(Unload {
+                    specimen: 0,
+                    stiffness: None,
+                    within: None,
+                    speed: None,
+                }),
                 Load::Impact { floor } => ProcedureKind::Impact(impact_on(*floor, stepping)),
                 Load::Escalate {
                     floor,
@@ -458,8 +480,8 @@ fn elements(draw: &mut Draw, floors: usize) -> Vec<Member> {
 fn load(draw: &mut Draw, floors: usize, has_elements: bool) -> Load {
     if draw.chance(0.7) {
         return Load::Shake {
-            steps: draw.between(3, 9),
-            peak: 0.01 * f64::from(draw.between(1, 5)),
+            steps: draw.between(4, 10),
+            peak: 0.02 * f64::from(draw.between(1, 6)),
         };
     }
     let floor = draw.below(floors);

@@ -5,10 +5,10 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::bench;
-use super::case::{Case, Session, Test};
+use super::case::{Case, Devices, Session, Test};
 use super::disk::{Disk, Killed};
 use super::fault::{Change, Fault, Kill, Part};
-use super::frame::{FrameTest, steps_of};
+use super::frame::{FrameTest, Load, steps_of};
 use super::laws::{Breach, Law, Released};
 use super::operator::Operator;
 use super::tally::Tally;
@@ -573,4 +573,39 @@ fn short(reason: &str) -> String {
         .split(' ')
         .filter(|word| !word.contains(|letter: char| letter.is_ascii_digit()));
     words.take(6).collect::<Vec<_>>().join(" ")
+}
+
+/// The laws that compare records find a rig at another scale, and a motion that is another one.
+#[test]
+fn another_scale_and_another_motion_are_found() {
+    let is_scaled = |test: &FrameTest| *test != test.at_full_scale();
+    let scaled = (0..).map(Case::of_seed).find_map(|case| match &case.test {
+        Test::Frame(test) if case.devices == Devices::Native && is_scaled(test) => {
+            Some((case.undisturbed(), test.clone()))
+        }
+        _ => None,
+    });
+    let (mut case, mut test) = scaled.expect("a seed with a scale");
+    test.loads = vec![Load::Shake {
+        steps: 9,
+        peak: 0.05,
+    }];
+    case.test = Test::Frame(test.clone());
+    case.axes.iter_mut().for_each(|axis| axis.farthest = None);
+    let lived = |case: &Case| {
+        let mut life = Life::new(case, Log::none());
+        life.session(0, &case.sessions[0]);
+        let record = life.completed.expect("it is completed");
+        (record, read(&life.bytes).expect("a run log").1)
+    };
+    let (record, logged) = lived(&case);
+    assert_eq!(at_its_scale(&test, &logged, &record), None);
+    let unscaled = test.at_full_scale();
+    assert!(at_its_scale(&unscaled, &logged, &record).is_some());
+    let (other, _) = lived(&Case {
+        test: Test::Frame(unscaled),
+        ..case.clone()
+    });
+    assert!(unlike(&case, &record, &other).is_some());
+    assert_eq!(unlike(&case, &record, &record), None);
 }

@@ -4,7 +4,6 @@ use super::case::{Case, Devices, Leg, Test};
 use super::frame::FrameTest;
 use super::laws::Law;
 use super::life::live;
-use psd_plan::{Part, Scale};
 
 /// Most lives that a reduction takes.
 const MOST: usize = 400;
@@ -95,15 +94,7 @@ fn smaller(case: &Case) -> Vec<Case> {
                         .for_each(|member| member.yields = false);
                 });
             });
-            without(&|case| {
-                frame(case, &|test| {
-                    for member in &mut test.members {
-                        if let Part::Tested { scale, .. } = &mut member.part {
-                            *scale = Scale::FULL;
-                        }
-                    }
-                });
-            });
+            without(&|case| frame(case, &|test| *test = test.at_full_scale()));
         }
     }
     for index in 0..case.axes.len() {

@@ -133,7 +133,8 @@ impl ActuatorModel {
         if self.course.is_some() {
             self.advance_on_path(seconds);
         } else if left != 0.0 {
-            let travel = self.speed * seconds;
+            // A distance within the rounding of the position is none: no sum would ever reach its end.
+            let travel = (self.speed * seconds).max(f64::EPSILON * self.target.abs());
             self.position = if left.abs() <= travel {
                 self.target
             } else {

@@ -186,6 +186,25 @@ fn actuators_of_a_frame_arrive_together_and_measure_differences_of_storey_shears
     assert!((rig.force_of(0) + 5.0).abs() < 1e-12 && (rig.force_of(1) + 8.0).abs() < 1e-12);
 }
 
+/// A target on the line is a rounded number: an actuator that stays can have one that differs by the last digit.
+#[test]
+fn a_distance_within_the_rounding_of_a_position_is_no_move() {
+    let start = 0.000_300_000_000_000_000_03;
+    let mut rig = EmulatedRig::of_frame(
+        elastic_rig().settings().clone(),
+        &frame(),
+        &[ACTUATOR, ACTUATOR],
+    )
+    .resting_at(&[0.0, start]);
+    assert_ne!(start, 0.0003);
+    rig.go_as(None, &[0.001, 0.0003], 0.01);
+    for step in 1..=20 {
+        rig.advance(0.01 * f64::from(step));
+    }
+    assert!(!rig.moving());
+    assert_eq!((rig.commanded_of(0), rig.commanded_of(1)), (0.001, 0.0003));
+}
+
 #[test]
 fn each_actuator_has_its_own_faults_and_noise() {
     let noisy = ActuatorSettings {

@@ -87,7 +87,6 @@ fn slowed_down(call: usize, after: bool) -> Option<SlowedDown> {
     let found = rig.read().unwrap();
     let bands = Bands {
         displacement: vec![1e-9],
-        axial: 0,
         force: vec![1e-6],
         stiffness: vec![Interval::ALL],
     };
@@ -256,14 +255,19 @@ fn an_amendment_holds_from_its_resumption_on() {
         t: stopped.time,
         ..RigBody::of(&rig)
     };
-    let bands = Bands {
-        axial: 0,
-        displacement: vec![1e-9],
-        force: vec![1e-6],
-        stiffness: vec![Interval::ALL],
+    let resumption = ResumeBody {
+        from: stopped.lines.back().unwrap().seq + 1,
+        by: "A. Witness".to_owned(),
+        reason: "too fast".to_owned(),
+        target_status: TargetStatus::None,
+        assured: Vec::new(),
+        found: (found.displacement, found.force),
+        recorded: None,
+        held: None,
+        released: None,
+        t: stopped.time,
+        wall: None,
     };
-    let decision = decide(&stopped, &about, &found, &bands, false).unwrap();
-    let resumption = decision.resumption("A. Witness", "too fast", &found, stopped.time);
     journal.append(EntryKind::Rig, &about).unwrap();
     journal.append(EntryKind::Resume, &resumption).unwrap();
     let (_, resumed) = logged(&disk.written());
