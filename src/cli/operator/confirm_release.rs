@@ -111,8 +111,16 @@ fn next(assured: &[Assurance], found: &Reading, decision: &ResumeDecision, axial
     let recorded = recorded.map_or_else(String::new, |(positions, forces)| {
         format!("; last logged at {}", position_and_force(positions, forces))
     });
+    let loads = found.force.iter().rev().take(axial).rev();
+    let loads = loads.map(|force| {
+        format!(
+            "; AXIAL holds {} in FORCE CONTROL",
+            readable(*force, Dimension::FORCE)
+        )
+    });
     format!(
-        "found at {}{recorded}; {next}{faster}",
-        position_and_force(&found.displacement, &found.force)
+        "found at {}{}{recorded}; {next}{faster}",
+        position_and_force(&found.displacement, &found.force),
+        loads.collect::<String>()
     )
 }

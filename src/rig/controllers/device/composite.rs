@@ -4,7 +4,7 @@
 
 use super::{Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
 use crate::{LineStatistics, NO_POWER_UP};
-use psd_plan::{AxialAxis, Interval, Limits};
+use psd_plan::{Interval, Limits};
 
 /// One of these devices.
 pub struct Member {
@@ -228,16 +228,6 @@ impl Device for Several {
         };
         self.each(|_, member| member.device.narrow_limits(&own(&member.axes)))
             .map(drop)
-    }
-
-    fn control_force(&mut self, axes: &[Option<AxialAxis>]) -> Result<(), DeviceFault> {
-        self.each(|_, member| {
-            let own = member.axes.iter();
-            let own: Vec<Option<AxialAxis>> =
-                own.map(|axis| axes.get(*axis).copied().flatten()).collect();
-            member.device.control_force(&own)
-        })
-        .map(drop)
     }
 
     /// None if one of the devices does not report its own.
