@@ -11,7 +11,13 @@ use super::{AxisReport, StepReport};
 use psd_physics::statistics::DeclaredNoise;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
+use psd_plan::schema::frames::ELEMENTS;
+use psd_plan::uncertainty::NOISE;
 use psd_rig::{Reading, RigFault, UnfinishedStep};
+use psd_text::units::Dimension;
+
+/// Of the largest deformation: positions of equal elements that differ by less have the same shape.
+const SAME_SHAPE: f64 = 0.01;
 
 impl Session<'_> {
     /// The layout of the assemblies; None if the axes are the floors.
@@ -87,7 +93,40 @@ impl Session<'_> {
         hybrid.at_start = hybrid.substructures.clone();
         hybrid.axes = reading;
         hybrid.commanded = hybrid.floors_at(&commanded).displacement;
-        Ok((hybrid.commanded.clone(), hybrid.floors()))
+        let floors = (hybrid.commanded.clone(), hybrid.floors());
+        self.check_shape(&commanded, &floors.0)?;
+        Ok(floors)
+    }
+
+    /// Tested elements that close a circle have deformations of one shape of the frame only. After an unloading each may stand at its own:
+    /// the first step would then move them by the difference.
+    fn check_shape(&self, axes: &[f64], floors: &[f64]) -> Result<(), Stop> {
+        let Some(elements) = self.assemblies().and_then(Assemblies::elements) else {
+            return Ok(());
+        };
+        let noise = self.floor_noise();
+        let softest = elements
+            .stiffness
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        let largest = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold(0.0, |most: f64, value| most.max(value.abs()))
+        };
+        let shape = self.axes_of(floors);
+        let apart = largest(&mut axes.iter().zip(&shape).map(|(axis, shape)| axis - shape));
+        let alike = SAME_SHAPE * largest(&mut axes.iter().copied())
+            + NOISE * (noise.resolution + noise.force / softest);
+        if apart <= alike {
+            return Ok(());
+        }
+        Err(Stop::bad_input(
+            ELEMENTS.name,
+            apart,
+            Dimension::LENGTH,
+            "0: by this the first step would move tested elements, so that their deformations are those of one shape of the frame. Let the \
+             frame come to rest instead of the unloading before it, or run this test as a plan of its own",
+        ))
     }
 
     /// The last reading of the elements of a frame of matrices, in numbers of the prototype; none for any other specimen.

@@ -93,7 +93,7 @@ struct FallsUnderAxialLoad {
 #[derive(Violation)]
 #[violation(
     W743,
-    "the axial load of storey {storey} is that of {load}, {times} times the weight that it carries, {weight}"
+    "the axial load of storey {storey} stands for {load} of the prototype, {times} times the weight that it carries, {weight}"
 )]
 #[help(
     "check `force` and `gravity`: the load on the rig is the weight times λ_f/n, here {} (a load by intention needs no change)",

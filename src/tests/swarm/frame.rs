@@ -278,6 +278,7 @@ impl FrameTest {
                     stiffness: None,
                     within: None,
                     speed: None,
+                    keep_axial_load: false,
                 }),
                 Load::Impact { floor } => ProcedureKind::Impact(impact_on(*floor, stepping)),
                 Load::Escalate {

@@ -86,6 +86,7 @@ fn slowed_down(call: usize, after: bool) -> Option<SlowedDown> {
     rig.own = SLOW;
     let found = rig.read().unwrap();
     let bands = Bands {
+        axial: 0,
         displacement: vec![1e-9],
         force: vec![1e-6],
         stiffness: vec![Interval::ALL],

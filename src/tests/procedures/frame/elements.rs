@@ -613,8 +613,9 @@ fn the_force_of_an_element_has_the_noise_and_the_budget_of_its_cell() {
     );
 }
 
+/// After a test without an unloading. The actuator holds what it held.
 #[test]
-fn a_second_test_begins_in_balance() {
+fn a_second_test_begins_where_the_first_ended() {
     for parts in [[TESTED, COMPUTED, COMPUTED], [COMPUTED, TESTED, COMPUTED]] {
         let mut plan = twice(parts);
         plan.procedures.remove(1);
@@ -644,6 +645,52 @@ fn a_second_test_begins_in_balance() {
 }
 
 /// The budget of the same frame as storeys: calibration of the tested one, stiffness of the computed ones.
+/// Two tested piers between the same ends: they come to rest at different deformations, and no displacement of the frame has both. The first
+/// step of another test would move them together.
+#[test]
+fn no_test_begins_at_deformations_that_the_frame_cannot_have() {
+    let mut plan = bridge(
+        [TESTED, COMPUTED, COMPUTED, COMPUTED],
+        bilinear,
+        Integrator::Explicit,
+    );
+    let mut frame = frame(&plan).clone();
+    let first = frame.elements[0].clone();
+    let stronger = Behaviour::Bilinear {
+        stiffness: first.stiffness,
+        yield_force: 1e9,
+        post_yield_ratio: 0.0,
+    };
+    frame.elements.insert(
+        1,
+        Element {
+            behaviour: stronger,
+            ..first
+        },
+    );
+    plan.specimens[0].frame = Some(frame);
+    let again = psd_plan::Procedure {
+        name: "again".to_owned(),
+        ..plan.procedures[0].clone()
+    };
+    plan.procedures.push(again.clone());
+    let straight = run_unwatched(&plan);
+    assert_eq!(straight.outcome, Outcome::Completed);
+    let unload = psd_plan::Procedure {
+        name: "rest".to_owned(),
+        kind: super::rest(None),
+    };
+    plan.procedures.insert(1, unload);
+    let record = run_unwatched(&plan);
+    let (Outcome::Blocked { reason }, [Some(_), Some(_)]) = (
+        &record.outcome,
+        [0, 1].map(|at| record.procedures.get(at).filter(|it| it.complete)),
+    ) else {
+        panic!("{:?}", record.outcome)
+    };
+    assert!(reason.contains("one shape of the frame"), "{reason}");
+}
+
 #[test]
 fn elements_have_the_budget_of_storeys() {
     let mut plan = shaken([COMPUTED, TESTED, COMPUTED], bilinear, Integrator::Explicit);

@@ -3,8 +3,9 @@
 use crate::tests::testing::{elastic_plan, every, run_unwatched};
 use crate::tests::uncertainty::frame::{base_excited_plan, entry, from};
 use psd_plan::formula::Formula::Constant;
-use psd_plan::formula::ResultValue;
+use psd_plan::formula::{ResultValue, UncertaintyStatus};
 use psd_plan::procedures::shake::block::{FINAL_DRIFT, MAX_DRIFT};
+use psd_plan::procedures::unload::block as unload;
 use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
@@ -439,4 +440,31 @@ fn a_computed_storey_is_uncertain_with_its_model() {
         (found.abs() - wanted.abs()).abs() < 0.01 * wanted.abs() && wanted != 0.0,
         "{found} for {wanted}"
     );
+}
+
+/// A floor on a computed storey has no known uncertainty: its storey was not measured. The drift of a measured storey has one.
+#[test]
+fn what_stands_on_a_computed_storey_has_no_uncertainty() {
+    let mut plan = shaken([TESTED, COMPUTED, TESTED], bilinear, INTEGRATORS[0]);
+    plan.rig.calibration.force_uncertainty = 0.01;
+    plan.rig.calibration.displacement_uncertainty = 0.002;
+    plan.procedures.push(Procedure {
+        name: "rest".to_owned(),
+        kind: super::rest(None),
+    });
+    let record = run_unwatched(&plan);
+    let known = |name: &str| -> Vec<bool> {
+        let result = record.procedures[1].result(name).unwrap();
+        let entries = result.entry_uncertainties();
+        entries.iter().map(Option::is_some).collect()
+    };
+    assert_eq!(known(unload::FLOOR_DISPLACEMENT.name), [true, false, false]);
+    assert_eq!(known(unload::RESIDUAL_DRIFT.name), [true, false, true]);
+    let status = |entry| {
+        let result = record.procedures[1].result(unload::RESIDUAL_DRIFT.name);
+        result.unwrap().uncertainty_status("unload", entry)
+    };
+    assert_eq!(status(Some(0)), UncertaintyStatus::Known);
+    assert!(matches!(status(Some(1)), UncertaintyStatus::Partial(_)));
+    assert!(matches!(status(None), UncertaintyStatus::Partial(_)));
 }
