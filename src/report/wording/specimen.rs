@@ -1,6 +1,7 @@
 //! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
+use crate::procedures::tests_the_specimen_alone;
 use crate::report::number::percent;
 use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
@@ -11,7 +12,7 @@ use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{
     AxialAxis, Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Interval, Loads,
-    Mechanism, Part, Pinching, Plan, Portal, ProcedureKind, Scale, Sections, Unloading,
+    Mechanism, Part, Pinching, Plan, Portal, Scale, Sections, Unloading,
 };
 use psd_text::suggest::with_article;
 use psd_text::units::Dimension;
@@ -213,17 +214,9 @@ pub fn axial_axis(plan: &Plan, axis: &AxialAxis, band: Interval, shown: Printed<
 #[must_use]
 pub fn numbers(plan: &Plan, frame: &Frame) -> Option<String> {
     let on_the_rig = numbers_on_the_rig(frame)?;
-    let of_the_specimen = plan.procedures.iter().filter(|procedure| {
-        matches!(
-            procedure.kind,
-            ProcedureKind::StiffnessRamp(_)
-                | ProcedureKind::DampingSweep(_)
-                | ProcedureKind::Cycle(_)
-                | ProcedureKind::Move(_)
-                | ProcedureKind::Preload(_)
-        )
-    });
-    let names: Vec<String> = of_the_specimen
+    let procedures = plan.procedures.iter();
+    let names: Vec<String> = procedures
+        .filter(|procedure| tests_the_specimen_alone(&procedure.kind))
         .map(|procedure| format!("{} ({})", procedure.name, procedure.kind.keyword()))
         .collect();
     let except = if names.is_empty() {

@@ -39,11 +39,12 @@ impl DryRun<'_> {
             let reached = match name {
                 _ if name == limits::DISPLACEMENT.name => {
                     let reach: fn(&Reach) -> &[Interval] = |reach| &reach.displacement;
-                    return self.nearest((name, dimension), limits, |of| of.displacement, reach);
+                    return self.nearest(name, dimension, limits, |of| of.displacement, reach);
                 }
                 _ if name == limits::FORCE.name => {
                     return self.nearest(
-                        (name, dimension),
+                        name,
+                        dimension,
                         limits,
                         |of| of.force,
                         |reach| &reach.force,
@@ -68,7 +69,8 @@ impl DryRun<'_> {
     /// A limit of which axes may have their own: that of the axis with the smallest margin; of all axes where none has.
     fn nearest(
         &self,
-        (name, dimension): (&'static str, Dimension),
+        name: &'static str,
+        dimension: Dimension,
         limits: &Limits,
         of: fn(&Limits) -> Interval,
         ranges: fn(&Reach) -> &[Interval],

@@ -264,7 +264,7 @@ fn unfit(storeys: &[Storey], storey: usize, specimen: &str) -> Option<(String, &
         (storey.part, below.map(|below| below.part))
     {
         return Some((
-            "it stands on a tested storey, which would carry the load too".to_owned(),
+            "the tested storey below it would carry the load too".to_owned(),
             "load the lowest storey of the specimen, or write `part: tested(apart: true)` in this one",
         ));
     }

@@ -61,7 +61,7 @@ pub const WITHIN: Field = Field::quantity(
 pub const KEEP_AXIAL_LOAD: Field = Field::choice(
     "keep_axial_load",
     TRUTH,
-    "the axial load of a `preload` stays on, for another procedure",
+    "whether the axial load of a `preload` stays on",
 )
 .default_in_words("false");
 
