@@ -125,9 +125,7 @@ pub fn run_with(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, kee
             record.outcome = stop.outcome();
         }
     }
-    if record.outcome == Outcome::Completed {
-        session.report_axial_loads();
-    }
+    session.report_axial_loads();
     record.events = session.finish();
     record
 }

@@ -253,7 +253,10 @@ impl RealRig {
         let force_jumps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
             rested.is_some_and(|(began, before)| {
                 let allowed = LEAP * axis.rules.noise + rate * (now - began);
-                axis.rules.noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
+                axis.axial.is_none()
+                    && axis.rules.noise > 0.0
+                    && rate > 0.0
+                    && (force - before).abs() > allowed
             })
         };
         let read = self.rested.iter().zip(&reading.force);
@@ -288,14 +291,12 @@ impl RealRig {
     /// The settling of each axis at its target: of its displacement within the band, or of its force within its tolerance.
     pub(super) fn settling(&self, targets: &[f64]) -> Vec<Settling> {
         let of = |(axis, target): (&Axis, &f64)| {
-            let band = axis.axial.map_or(self.settle.band, |axial| axial.tolerance);
-            Settling::new(
-                Settle {
-                    band,
-                    ..self.settle
-                },
-                *target,
-            )
+            let settle = axis.axial.map_or(self.settle, |axial| Settle {
+                band: axial.tolerance,
+                force_rate: 0.0,
+                ..self.settle
+            });
+            Settling::new(settle, *target)
         };
         self.axes.iter().zip(targets).map(of).collect()
     }

@@ -3,14 +3,14 @@
 
 use super::two_axes::{checked, messages, results, same};
 use super::{killed, logged_run};
-use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
+use crate::run::{Inspection, Motion, Observer, StepReport, Unwatched};
 use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
-use crate::tests::fault_table::stage::{Ended, emulator, link, open, run};
+use crate::tests::fault_table::stage::{Ended, emulator, link, open, run, run_watched};
 use crate::tests::testing::run_unwatched;
 use psd_plan::Plan;
-use psd_plan::record::{EventKind, Record};
+use psd_plan::record::{EventKind, Record, UNLOADING};
 use psd_rig::emulator::Log;
 use psd_rig::emulator::firmware::sealed;
 use psd_rig::transport::{Clock as _, Port as _};
@@ -357,8 +357,37 @@ fn a_load_that_was_taken_off_meanwhile_is_not_applied_again() {
     );
 }
 
+/// Stops after a number of steps, and answers whether the rig may be unloaded.
+struct StopsAndUnloads {
+    steps: usize,
+    questions: Vec<String>,
+}
+
+impl Observer for StopsAndUnloads {
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        Unwatched.release(note, motion)
+    }
+
+    fn step_done(&mut self, _: &StepReport) {
+        self.steps = self.steps.saturating_sub(1);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.steps == 0
+    }
+
+    fn may_unload(&mut self, question: &str, _: &Motion) -> Option<Inspection> {
+        self.questions.push(question.to_owned());
+        Some(Inspection::GoOn {
+            note: None,
+            by: None,
+        })
+    }
+}
+
+/// After a stop a load is taken off if the operator wants it, and never without a question.
 #[test]
-fn nothing_is_unloaded_under_the_load() {
+fn a_stopped_specimen_is_unloaded_for_the_operator_alone() {
     let plan = checked(
         &PLAN.replace("safe_state  = hold", "safe_state  = unload"),
         "frame_rig",
@@ -368,11 +397,26 @@ fn nothing_is_unloaded_under_the_load() {
         "after 31 moves: axis 1 drift force 1000000 N/s",
         "force",
     );
+    let holds = ended.events(EventKind::Hold);
+    assert!(!holds.contains(&UNLOADING), "{holds:?}");
+    let mut operator = StopsAndUnloads {
+        steps: 20,
+        questions: Vec::new(),
+    };
+    let ended = run_watched(&plan, "", &mut operator).unwrap();
+    assert_eq!(operator.questions.len(), 1, "{}", ended.reason());
+    let asked = "its start position; there AXIAL of storey 1 takes off its 262.5 kN";
     assert!(
-        !ended
-            .events(EventKind::Hold)
-            .iter()
-            .any(|text| text.contains("unload"))
+        operator.questions[0].ends_with(asked),
+        "{:?}",
+        operator.questions
+    );
+    assert!(load_of(&ended.emulator).abs() < 1e-6);
+    assert!(ended.emulator.lock().rig().commanded_of(0).abs() < 1e-9);
+    let notes = ended.events(EventKind::Note);
+    assert!(
+        !notes.iter().any(|note| note.contains("was not taken off")),
+        "{notes:?}"
     );
 }
 
