@@ -82,7 +82,7 @@ pub(super) enum Amendment {
     Speed(usize, f64),
     /// Target of the leg with this index.
     Target(usize, f64),
-    /// The own limits of an axis become ± this \[m\].
+    /// The own limits of an axis become ± this \[m\], if that is narrower.
     AxisLimits(usize, f64),
     /// Steps of the ground motion with this index.
     Steps(usize, u32),
