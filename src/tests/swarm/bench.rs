@@ -316,8 +316,11 @@ pub(super) fn amended(plan: &Plan, amendments: &[Amendment]) -> Plan {
             }
             Amendment::Limits(farthest) => plan.limits.displacement = within(*farthest),
             Amendment::AxisLimits(axis, farthest) => {
+                // A site does not report its limits: the plan stays within them.
                 if let Link::Real(link) = &mut plan.rig.link {
-                    link.axes[*axis].displacement = Some(within(*farthest));
+                    let own = &mut link.axes[*axis].displacement;
+                    let before = own.map_or(f64::INFINITY, |before| before.high);
+                    *own = Some(within(farthest.min(before)));
                 }
             }
             Amendment::Steps(load, steps) => {
