@@ -135,18 +135,6 @@ pub(crate) fn leaves(kind: &ProcedureKind, left: Left<'_>) -> Leaves<'static> {
     }
 }
 
-/// Check and report: whether it tests the specimen on the rig without the structure of which it is a part.
-pub(crate) const fn tests_the_specimen_alone(kind: &ProcedureKind) -> bool {
-    matches!(
-        kind,
-        ProcedureKind::StiffnessRamp(_)
-            | ProcedureKind::DampingSweep(_)
-            | ProcedureKind::Cycle(_)
-            | ProcedureKind::Move(_)
-            | ProcedureKind::Preload(_)
-    )
-}
-
 /// Check: the specimen whose mass and its uncertainty a procedure uses, if it does. Collects the sources that its own mass states.
 pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Option<usize> {
     let mut of_impact = |impact: &Impact| {

@@ -89,6 +89,19 @@ pub enum ProcedureKind {
 }
 
 impl ProcedureKind {
+    /// Whether it tests the specimen on the rig without the structure of which it is a part.
+    #[must_use]
+    pub const fn tests_the_specimen_alone(&self) -> bool {
+        matches!(
+            self,
+            Self::StiffnessRamp(_)
+                | Self::DampingSweep(_)
+                | Self::Cycle(_)
+                | Self::Move(_)
+                | Self::Preload(_)
+        )
+    }
+
     /// The block's keyword, as in `summary.json`.
     #[must_use]
     pub const fn keyword(&self) -> &'static str {

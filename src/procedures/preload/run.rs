@@ -9,7 +9,8 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::preload::block as schema;
-use psd_plan::record::{AxialReading, EventKind, History};
+use psd_plan::record::{AxialReading, EventKind, History, NamedResult};
+use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Plan, Preload};
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
@@ -36,12 +37,45 @@ pub(crate) fn perform(
         .filter(|_| stop.is_none());
     Performed {
         history: History::Preload,
-        results: vec![
-            schema::AXIAL_FORCE.found(at_the_end.map(|reading| reading.force)),
-            schema::AXIAL_DISPLACEMENT.found(at_the_end.map(|reading| reading.displacement)),
-        ],
+        results: results(plan, whole, at_the_end),
         stop,
     }
+}
+
+/// The last reading, as uncertain as the cell and the transducer of its axis.
+fn results(plan: &Preload, whole: &Plan, at_the_end: Option<AxialReading>) -> Vec<NamedResult> {
+    let mut axes = whole.rig.axial_axes(&whole.limits);
+    let position = axes.position(|(axis, _)| axis.storey == plan.storey);
+    let axis = whole.degrees_of_freedom() + position.unwrap_or(0);
+    let calibration = whole.rig.calibration_of(axis);
+    let some = |parts: &[(Source, f64)]| -> Vec<Contribution> {
+        let parts = parts.iter().filter(|(_, amount)| *amount != 0.0);
+        parts
+            .map(|(source, amount)| Contribution::new(*source, *amount))
+            .collect()
+    };
+    let (force, displacement) = at_the_end
+        .map(|reading| (reading.force, reading.displacement))
+        .unzip();
+    vec![
+        schema::AXIAL_FORCE.found_by(
+            force,
+            some(&[
+                (
+                    Source::ForceScale(axis),
+                    force.unwrap_or(0.0) * calibration.force_uncertainty,
+                ),
+                (Source::ForceZero(axis), calibration.zero()),
+            ]),
+        ),
+        schema::AXIAL_DISPLACEMENT.found_by(
+            displacement,
+            some(&[(
+                Source::DisplacementScale(axis),
+                displacement.unwrap_or(0.0) * calibration.displacement_uncertainty,
+            )]),
+        ),
+    ]
 }
 
 fn load(plan: &Preload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {

@@ -1,7 +1,6 @@
 //! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
-use crate::procedures::tests_the_specimen_alone;
 use crate::report::number::percent;
 use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
@@ -216,7 +215,7 @@ pub fn numbers(plan: &Plan, frame: &Frame) -> Option<String> {
     let on_the_rig = numbers_on_the_rig(frame)?;
     let procedures = plan.procedures.iter();
     let names: Vec<String> = procedures
-        .filter(|procedure| tests_the_specimen_alone(&procedure.kind))
+        .filter(|procedure| procedure.kind.tests_the_specimen_alone())
         .map(|procedure| format!("{} ({})", procedure.name, procedure.kind.keyword()))
         .collect();
     let except = if names.is_empty() {

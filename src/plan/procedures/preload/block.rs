@@ -20,13 +20,13 @@ pub const FORCE: Field = Field::quantity(
 .required("force = 262.5 kN")
 .above_zero();
 
-pub const AXIAL_FORCE: ResultKind = ResultKind::new(
+pub const AXIAL_FORCE: ResultKind = ResultKind::measured(
     "axial_force",
     Dimension::FORCE,
     "axial force at the end, as measured",
 );
 
-pub const AXIAL_DISPLACEMENT: ResultKind = ResultKind::new(
+pub const AXIAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "axial_displacement",
     Dimension::LENGTH,
     "displacement of the axial axis at the end; positive if it shortens the storey",
