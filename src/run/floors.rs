@@ -125,7 +125,7 @@ impl Session<'_> {
             apart,
             Dimension::LENGTH,
             "0: by this the first step would move tested elements, so that their deformations are those of one shape of the frame. Let the \
-             frame come to rest instead of the unloading before it, or run this test as a plan of its own",
+             frame come to rest instead of the unloading before it, or run this test as a separate plan",
         ))
     }
 

@@ -1,7 +1,7 @@
 //! The uncertainties of striker, specimen and rig that a plan does not declare, and that no budget therefore includes. In: a plan. Out:
 //! phrases for the report. It makes no statement of conformity: a plan may leave out contributions that are small.
 
-use crate::{Calibration, Plan, RigPlan};
+use crate::{Calibration, Frame, Plan, RigPlan};
 
 /// The uncertain inputs of striker and specimen that a procedure depends on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,7 +49,7 @@ impl Plan {
             ("specimen mass", mass_of_one || mass_of_frame),
             (
                 "weights of the floors",
-                frame.is_some_and(|frame| frame.computes_p_delta()),
+                frame.is_some_and(Frame::computes_p_delta),
             ),
             (
                 "axial load and its share of P-Δ",

@@ -93,7 +93,7 @@ struct FallsUnderAxialLoad {
 #[derive(Violation)]
 #[violation(
     W743,
-    "the axial load of storey {storey} stands for {load} of the prototype, {times} times the weight that it carries, {weight}"
+    "the axial load of storey {storey} is {load} in the prototype, {times} times the weight that it carries, {weight}"
 )]
 #[help(
     "check `force` and `gravity`: the load on the rig is the weight times λ_f/n, here {} (a load by intention needs no change)",
@@ -125,7 +125,7 @@ fn warn_of_another_load(checker: &mut Checker, frame: &Frame, preload: &Preload,
     let scale = storey.part.scale().forces();
     let load = preload.force * scale;
     let times = load / weight;
-    if times > OTHER || times < 1.0 / OTHER {
+    if !(1.0 / OTHER..=OTHER).contains(&times) {
         checker.report(AnotherLoadThanItsWeight {
             storey: preload.storey + 1,
             load: readable(load, Dimension::FORCE),

@@ -168,8 +168,22 @@ impl<'a> Normalizer<'a> {
             return 1;
         };
         match first {
-            'a'..='z' | 'A'..='Z' | '0'..='9' => 1,
-            '_' | ' ' | '\n' | ',' | '(' | ')' | '[' | ']' | '{' | '}' | '%' | '+' | '^' => 1,
+            'a'..='z'
+            | 'A'..='Z'
+            | '0'..='9'
+            | '_'
+            | ' '
+            | '\n'
+            | ','
+            | '('
+            | ')'
+            | '['
+            | ']'
+            | '{'
+            | '}'
+            | '%'
+            | '+'
+            | '^' => 1,
             '#' => line(rest).len(),
             // A string that is never closed has a separate error: the text after it contains no operators.
             '"' => text_extent(rest).unwrap_or_else(|| match self.quoted(rest, first) {
