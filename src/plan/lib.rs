@@ -69,7 +69,7 @@ pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
 pub use reproduction::Reproduction;
-pub use rig::axis::{AxialAxis, AxisCalibration, AxisPlan};
+pub use rig::axis::{AxialAxis, AxialColumn, AxisCalibration, AxisPlan};
 pub use rig::axis_names::{named_axis, of_axis, who};
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
@@ -153,6 +153,7 @@ impl Plan {
     pub fn on_an_ideal_rig(&self) -> Self {
         let mut ideal = self.clone();
         ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&self.rig));
+        ideal.rig.simulated_axes = self.rig.listed_axes().to_vec();
         ideal
     }
 

@@ -233,7 +233,7 @@ pub(crate) fn run(
         ProcedureKind::Escalate(series) => escalate::run::perform(series, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::run::perform(unload, plan, inputs, session),
         ProcedureKind::Move(target) => move_to::run::perform(target, inputs, session),
-        ProcedureKind::Preload(load) => preload::run::perform(load, inputs, session),
+        ProcedureKind::Preload(load) => preload::run::perform(load, plan, inputs, session),
         ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
     }
 }

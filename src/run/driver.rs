@@ -125,6 +125,7 @@ pub fn run_with(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, kee
             record.outcome = stop.outcome();
         }
     }
+    session.report_axial_loads();
     record.events = session.finish();
     record
 }

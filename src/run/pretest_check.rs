@@ -7,16 +7,20 @@ use super::session::Session;
 use super::start;
 use super::start::remedy;
 use super::stop::Stop;
+use psd_physics::structure::substructures::on_the_rig;
 use psd_plan::record::EventKind;
-use psd_plan::{Plan, PretestCheck, RealLink};
+use psd_plan::{AxialAxis, Plan, PretestCheck, RealLink};
 use psd_rig::safety::failpoint;
 use psd_rig::safety::failpoint::Guarding;
-use psd_rig::{Reading, named_axis, of_axis};
+use psd_rig::{Reading, of_axis};
 use psd_text::units::Dimension;
 use psd_text::units::display::{readable, stated};
 
 /// Time between the two readings at rest \[s\].
 const REST: f64 = 1.0;
+/// Difference from the expected change of a stiffness that is a remark, as a fraction of it, beside the scatter of two probes in noises.
+const UNEXPECTED: f64 = 0.5;
+const PROBE_SCATTER: f64 = 12.0;
 
 /// Requests the motion enable, then tests the rig axis by axis. No motion has occurred before; `afterwards` describes the motion after
 /// the check.
@@ -41,11 +45,11 @@ pub(crate) fn pass(
     };
     // No motion enable is requested for a rig at a different position.
     start::check(plan, link, session.guard.found())?;
-    let note = format!(
-        "release rig {}: it MOVES {by} and back (pre-test check), then {afterwards}",
-        plan.rig.name
+    let does = format!(
+        "it MOVES {by} and back (pre-test check), then {afterwards}{}",
+        axial_loads(plan)
     );
-    let does = format!("it MOVES {by} and back (pre-test check), then {afterwards}");
+    let note = format!("release rig {}: {does}", plan.rig.name);
     let position = Some(start::describe(session));
     session.release(
         &note,
@@ -68,7 +72,10 @@ pub(crate) fn pass(
         {
             return refuse(format!(
                 "{}{} at rest (limit {}): {}",
-                named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
+                session
+                    .guard
+                    .named_axis(axis)
+                    .map_or_else(String::new, |axis| format!("axis {axis}: ")),
                 readable(*force, Dimension::FORCE),
                 stated(pretest_check.zero, Dimension::FORCE),
                 remedy(at_rest.displacement[axis], *force, pretest_check)
@@ -81,6 +88,7 @@ pub(crate) fn pass(
         // Each axis is compared with the reading at rest before its move, after the previous axis has returned.
         let (column, back) = probe(axis, pretest_check, &before, session)?;
         before = back;
+        session.probed.push(column[axis]);
         let force = readable(at_rest.force[axis], Dimension::FORCE);
         let drift = readable(
             (at_rest.force[axis] - first.force[axis]) / REST,
@@ -91,10 +99,10 @@ pub(crate) fn pass(
         let text = format!(
             "{force} at rest, zero drift {drift}/s, stiffness {found} in a move of {probe}"
         );
-        let text = match named_axis(axis, axes) {
+        let text = match session.guard.named_axis(axis) {
             None => format!("pre-test check passed: {text}"),
             Some(axis) => format!(
-                "pre-test check passed by axis {axis}: {text}; {}",
+                "pre-test check passed by axis {axis}: {text}{}",
                 others(&column, axis)
             ),
         };
@@ -103,9 +111,95 @@ pub(crate) fn pass(
     Ok(())
 }
 
+/// The axial loads of the plan, as the end of a sentence about its motion.
+fn axial_loads(plan: &Plan) -> String {
+    let loads = plan.procedures.iter();
+    let loads = loads.filter_map(|procedure| procedure.kind.axial_load());
+    let axes: Vec<AxialAxis> = plan
+        .rig
+        .axial_axes(&plan.limits)
+        .map(|(axis, _)| axis)
+        .collect();
+    let text = |(storey, force): (usize, f64)| {
+        let axis = axes.iter().find(|axis| axis.storey == storey)?;
+        Some(format!(
+            "; AXIAL of storey {} LOADS it to {} at {} and holds this in FORCE CONTROL until `unload`, also if psd ends",
+            storey + 1,
+            stated(force, Dimension::FORCE),
+            stated(axis.rate, Dimension::FORCE_RATE)
+        ))
+    };
+    loads.filter_map(text).collect()
+}
+
+/// Measures the stiffness of the lateral axes again under the axial loads. Each part of the specimen changes by −φ N/h of its storey. Another
+/// change is a remark: a wrong direction or share of the load, or a specimen that the load stiffens.
+pub(crate) fn pass_under_load(plan: &Plan, session: &mut Session<'_>) -> Result<(), Stop> {
+    let (Some(link), Some(frame)) = (plan.rig.link.as_real(), plan.frame_on_the_rig()) else {
+        return Ok(());
+    };
+    let unloaded = session.probed.clone();
+    for (axis, before) in unloaded.into_iter().enumerate() {
+        session.stop_if_requested()?;
+        let pretest_check = link.pretest_check_of(axis);
+        let at_rest = session.guard.read()?;
+        let (column, _) = move_and_return(axis, &pretest_check, &at_rest, session)?;
+        let loads = session.guard.axial_loads().collect::<Vec<_>>();
+        let leaning = |(storey, force): &(usize, f64)| {
+            let axes = plan.rig.axial_axes(&plan.limits);
+            let mut axes = axes.filter(|(axial, _)| axial.storey == *storey);
+            let column = axes.next()?.0.column(frame)?;
+            // An axis imposes the drifts of its own storey and of the one above it in the same assembly.
+            let is_moved = column.tested == axis
+                || column.tested == axis + 1 && !on_the_rig(frame).nth(axis + 1)?.1;
+            is_moved.then_some(column.p_delta * force / column.height)
+        };
+        let expected: f64 = loads.iter().filter_map(leaning).sum();
+        let lost = before - column[axis];
+        let text = format!(
+            "under the axial load the stiffness{} is {}, lower by {} ({} expected)",
+            of_axis(session.guard.named_axis(axis)),
+            readable(column[axis], Dimension::STIFFNESS),
+            readable(lost, Dimension::STIFFNESS),
+            readable(expected, Dimension::STIFFNESS)
+        );
+        let scatter = PROBE_SCATTER * link.readings_of(axis).noise / pretest_check.probe.abs();
+        let kind = if (lost - expected).abs() > UNEXPECTED * expected.abs() + scatter {
+            EventKind::Remark
+        } else {
+            EventKind::Note
+        };
+        session.event(kind, text);
+    }
+    Ok(())
+}
+
 /// Makes a small move of one axis alone, and returns. Gives the column of the stiffness matrix \[N/m\]: the change of force of every axis
 /// divided by the travel. Also gives the reading after the return.
 fn probe(
+    axis: usize,
+    pretest_check: &PretestCheck,
+    before: &Reading,
+    session: &mut Session<'_>,
+) -> Result<(Vec<f64>, Reading), Stop> {
+    let (column, back) = move_and_return(axis, pretest_check, before, session)?;
+    let probe = stated(pretest_check.probe, Dimension::LENGTH);
+    let of = of_axis(session.guard.named_axis(axis));
+    let stiffness = column[axis];
+    let (low, high) = (pretest_check.stiffness.low, pretest_check.stiffness.high);
+    let bound = |value| stated(value, Dimension::STIFFNESS);
+    let found = readable(stiffness, Dimension::STIFFNESS);
+    if failpoint::on(Guarding::PretestStiffness) && !pretest_check.stiffness.contains(stiffness) {
+        let (low, high) = (bound(low), bound(high));
+        return refuse(format!(
+            "the stiffness{of} in a move of {probe} is {found}, outside {low} .. {high}: check unit and scale"
+        ));
+    }
+    Ok((column, back))
+}
+
+/// Gives the column of the stiffness matrix \[N/m\] and the reading after the return, as [`probe`].
+fn move_and_return(
     axis: usize,
     pretest_check: &PretestCheck,
     before: &Reading,
@@ -120,7 +214,7 @@ fn probe(
     let back = session.guard.read()?;
 
     let probe = stated(pretest_check.probe, Dimension::LENGTH);
-    let of = of_axis(named_axis(axis, home.len()));
+    let of = of_axis(session.guard.named_axis(axis));
     let moved = there.displacement[axis] - before.displacement[axis];
     if moved == 0.0 {
         return refuse(format!(
@@ -141,15 +235,6 @@ fn probe(
             "displacement and force{of} have opposite polarity: reverse one of them, or change the rig's `polarity`"
         ));
     }
-    let (low, high) = (pretest_check.stiffness.low, pretest_check.stiffness.high);
-    let bound = |value| stated(value, Dimension::STIFFNESS);
-    let found = readable(stiffness, Dimension::STIFFNESS);
-    if failpoint::on(Guarding::PretestStiffness) && !pretest_check.stiffness.contains(stiffness) {
-        let (low, high) = (bound(low), bound(high));
-        return refuse(format!(
-            "the stiffness{of} in a move of {probe} is {found}, outside {low} .. {high}: check unit and scale"
-        ));
-    }
     Ok((column, back))
 }
 
@@ -164,7 +249,11 @@ fn others(column: &[f64], axis: usize) -> String {
             )
         })
         .collect();
-    format!("with {}", listed.join(", "))
+    if listed.is_empty() {
+        String::new()
+    } else {
+        format!("; with {}", listed.join(", "))
+    }
 }
 
 fn refuse<T>(reason: String) -> Result<T, Stop> {

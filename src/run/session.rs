@@ -42,6 +42,8 @@ pub(crate) struct Session<'run> {
     is_simulated: bool,
     /// Of the readings of the rig \[N\].
     pub(super) force_resolution: f64,
+    /// Stiffness of each axis in the pre-test check \[N/m\]; empty on a virtual rig.
+    pub(super) probed: Vec<f64>,
     /// None if the rig carries the whole specimen.
     pub(super) hybrid: Option<Hybrid>,
 }
@@ -96,6 +98,7 @@ impl<'run> Session<'run> {
                     keep: Keep::default(),
                     is_simulated,
                     force_resolution: plan.rig.force_resolution(),
+                    probed: Vec::new(),
                     hybrid: Hybrid::of(plan),
                 })
             }

@@ -10,11 +10,11 @@ use psd_plan::record::{EventKind, Outcome};
 use psd_plan::{Interval, Limits, Plan, RealLink, SafeState};
 use psd_rig::{FinalHold, RigFault};
 use psd_text::units::Dimension;
-use psd_text::units::display::{plain, readable};
+use psd_text::units::display::{plain, readable, stated};
 
 impl Session<'_> {
     /// Holds the rig, and unloads it if unloading is its safe state and the operator is not at the rig. Also unloads it if the operator
-    /// requests it.
+    /// requests it. An axial load is taken off only if the operator requests it.
     pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
         let halted = self.end(stop);
         let Some(link) = plan.rig.link.as_real() else {
@@ -22,7 +22,8 @@ impl Session<'_> {
         };
         let held = halted.as_ref().is_none_or(FinalHold::is_held);
         let declared = link.safe_state == SafeState::Unload && stop.leaves_the_rig_sound();
-        let alone = declared && !self.attended && !stop.is_a_persons();
+        let is_loaded = self.guard.axial_loads().next().is_some();
+        let alone = declared && !self.attended && !stop.is_a_persons() && !is_loaded;
         // A rig that the operator held during a move has since been read at rest: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
         if held
@@ -42,6 +43,22 @@ impl Session<'_> {
         self.report_final_hold(halted.as_ref());
         self.leave();
         halted
+    }
+
+    /// Reports the axial loads that a run leaves on a real specimen.
+    pub(crate) fn report_axial_loads(&mut self) {
+        if self.guard.datum().is_none() {
+            return;
+        }
+        let loads: Vec<(usize, f64)> = self.guard.axial_loads().collect();
+        for (storey, force) in loads {
+            let text = format!(
+                "the axial load of storey {} was not taken off: its target is {}",
+                storey + 1,
+                stated(force, Dimension::FORCE)
+            );
+            self.event(EventKind::Note, text);
+        }
     }
 
     /// Reports the position at which the rig holds, or that the hold is not confirmed.
@@ -77,7 +94,8 @@ impl Session<'_> {
             format!(" at {}", plain(speed, Dimension::VELOCITY, 4))
         });
         let question = format!(
-            "unload? The rig is HELD at {at}. If confirmed, it MOVES to {home}{speed}, its start position"
+            "unload? The rig is HELD at {at}. If confirmed, it MOVES to {home}{speed}, its start position{}",
+            self.takes_off()
         );
         loop {
             match self.observer.may_unload(&question, &motion) {
@@ -109,6 +127,18 @@ impl Session<'_> {
         }
     }
 
+    /// What happens to the axial loads at the start position, as the end of a sentence.
+    fn takes_off(&self) -> String {
+        let loads = self.guard.axial_loads().map(|(storey, force)| {
+            format!(
+                "; there AXIAL of storey {} takes off its {}",
+                storey + 1,
+                stated(force, Dimension::FORCE)
+            )
+        });
+        loads.collect()
+    }
+
     /// The motion that removes the load.
     fn unloading(&self, plan: &Plan, halted: Option<&FinalHold>) -> Motion {
         let found = halted.and_then(|halted| halted.found.as_ref());
@@ -134,7 +164,7 @@ impl Session<'_> {
             speed,
             duration: speed.map(|speed| Motion::duration(plan, longest, speed)),
         };
-        let does = "it MOVES back to its start position".to_owned();
+        let does = format!("it MOVES back to its start position{}", self.takes_off());
         let motion = Motion::of(plan, self.identity(), does);
         let of_axes = self.guard.limits_of_axes();
         let limits = Limits {
@@ -166,11 +196,15 @@ impl Session<'_> {
         is_extended
     }
 
-    /// Unloads after a stop; a fault is an additional event.
+    /// Unloads after a stop; a fault is an additional event. The axial load goes last, while the other axes hold.
     fn unload(&mut self) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();
-        let unloaded = self.go_to_all(&home, None).and_then(|()| self.guard.read());
+        let mut unloaded = self.go_to_all(&home, None).and_then(|()| self.guard.read());
+        if unloaded.is_ok() && self.guard.axial_loads().next().is_some() {
+            let taken_off = self.guard.load_axially(None, 0.0);
+            unloaded = taken_off.and_then(|()| self.guard.read());
+        }
         self.end_unloading(unloaded.map(drop));
     }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use psd::check::{LoadError, Options, check};
 use psd_language::syntax::{format, parse};
-use psd_plan::Interval;
+use psd_plan::{AxialAxis, Interval};
 use psd_rig::controllers::native;
 use psd_rig::controllers::native::codec::{
     AxisBounds, Bounds, End, LONGEST_FRAME, ReplyKind, Request,
@@ -106,14 +106,14 @@ fn every_rig_block_checks_in_the_plan_around_it() {
     }
 }
 
-/// The frames of the protocol's conversations, for a rig of one axis and for one of two, without their endings.
+/// The frames of the protocol's conversations, for a rig of one axis, for one of two, and in force control, without their endings.
 fn frames() -> Vec<String> {
     let page = page("reference/native-protocol.md");
     let talks: Vec<_> = blocks(&page, "text")
         .into_iter()
         .filter(|block| block.starts_with(">HELLO"))
         .collect();
-    assert_eq!(talks.len(), 2, "two conversations are shown");
+    assert_eq!(talks.len(), 3, "three conversations are shown");
     talks
         .iter()
         .flat_map(|talk| talk.lines())
@@ -138,7 +138,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
             .expect("a frame has its checksum");
         let words: Vec<&str> = body.split(' ').collect();
         let sequence: u32 = words[1].parse().expect("a sequence number");
-        let (bounds, targets, rate, ends);
+        let (bounds, targets, rate, control, ends);
         let request = match (words[0], &words[2..]) {
             ("HELLO", []) => Request::Hello,
             ("LIM", [axes @ .., speed]) => {
@@ -164,15 +164,34 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
                 Request::Limits(&bounds)
             }
             ("MOVE", [id, positions @ .., speed]) => {
-                let positions: Vec<f64> =
-                    positions.iter().map(|position| metres(position)).collect();
-                targets = native::codec::lengths(&positions).expect("they can be said");
+                // A force has three decimals.
+                let written = |word: &&str| match word.split_once('.') {
+                    Some((_, decimals)) if decimals.len() == 3 => {
+                        native::codec::force(newtons(word))
+                    }
+                    _ => native::codec::length(metres(word)),
+                };
+                let each: Option<Vec<String>> = positions.iter().map(written).collect();
+                targets = each.expect("they can be said").join(" ");
                 rate = native::codec::length(metres(speed)).expect("it can be said");
                 Request::Move {
                     id: id.parse().expect("a number"),
                     targets: &targets,
                     speed: &rate,
                 }
+            }
+            ("FORCE", words) => {
+                let axis = |pair: &[&str]| {
+                    let rate = newtons(pair[0]);
+                    (rate > 0.0).then(|| AxialAxis {
+                        storey: 0,
+                        rate,
+                        tolerance: newtons(pair[1]),
+                        p_delta: 1.0,
+                    })
+                };
+                control = words.chunks(2).map(axis).collect::<Vec<_>>();
+                Request::Force(&control)
             }
             ("GLIDE", [id, words @ .., time]) => {
                 let end = |pair: &[&str]| End {
@@ -201,7 +220,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         verbs.push(words[0].to_owned());
     }
     for verb in [
-        "HELLO", "LIM", "MOVE", "GLIDE", "MEAS", "STAT", "STOP", "CLR", "REF",
+        "HELLO", "LIM", "FORCE", "MOVE", "GLIDE", "MEAS", "STAT", "STOP", "CLR", "REF",
     ] {
         assert!(
             verbs.iter().any(|shown| shown == verb),
@@ -242,17 +261,13 @@ fn every_reply_on_the_page_is_valid_and_has_the_meaning_on_the_page() {
                     .map(|axis| (axis.displacement.high, axis.force.high))
                     .collect();
                 assert_eq!(hello.bounds.top_speed, 0.12);
-                let last = hello.last.map(|last| (last.id, last.targets));
+                let last = hello.last;
                 if parts.len() == 10 {
-                    assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1e-3]))));
+                    assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1.0]))));
                 } else {
-                    assert_eq!(
-                        (highs, last),
-                        (
-                            vec![(0.03, 8e3), (0.06, 5e3)],
-                            Some((21, vec![1.25e-3, -2.5e-3]))
-                        )
-                    );
+                    let of_two = (vec![(0.03, 8e3), (0.06, 5e3)], Some((21, vec![1.25, -2.5])));
+                    let axial = (vec![(0.03, 8e4), (0.004, 3e5)], Some((21, vec![0.0, 0.0])));
+                    assert!([of_two, axial].contains(&(highs, last)), "{line}");
                 }
             }
             (ReplyKind::Ack, 2) if native::codec::left(&parts).is_some() => {

@@ -154,11 +154,16 @@ fn metered() -> Stage {
 
 /// Results of the plan on an ideal rig, for comparison with the run of the stage.
 fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
+    virtual_of(stage, "ideal")
+}
+
+/// The same on this virtual rig.
+fn virtual_of(stage: &Stage, rig: &str) -> Vec<(String, f64)> {
     let mut virtual_run = std::process::Command::new(PSD);
     virtual_run
         .arg("run")
         .arg(stage.path("plan.psd"))
-        .args(["--rig", "ideal", "--out"])
+        .args(["--rig", rig, "--out"])
         .arg(stage.path("ideal"));
     succeeded(&wait(&mut virtual_run));
     results(&stage.path("ideal"))
@@ -296,4 +301,60 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
         },
     );
     killed_it_goes_on(&stage_of(PLAN, GROUND), 17, &whole);
+}
+
+/// The lower storey under 60 kN, which lower its stiffness by a fifteenth.
+fn under_load() -> Stage {
+    let axial = "      zero_uncertainty: 1.5 N,\n    ),\n    axis(\n      axial: 1,\n      control: force(rate: 2 MN/s, tolerance: 0.5 kN),\n      \
+                 p_delta: 100 %,\n      displacement: -4 mm .. 4 mm,\n      calibration: \"UKAS 4713\",\n    ),\n";
+    let simulated = "rig simulated {\n  link = virtual\n  axes = [\n    axis,\n    axis,\n    axis(\n      axial: 1,\n      \
+                     control: force(rate: 2 MN/s, tolerance: 0.5 kN),\n      p_delta: 100 %,\n      displacement: -4 mm .. 4 mm,\n    ),\n  ]\n}\n\n\
+                     specimen frame {";
+    let plan = plan_with(&[
+        ("specimen frame {", simulated),
+        ("      zero_uncertainty: 1.5 N,\n    ),\n", axial),
+        ("storey(mass: 2 t,", "storey(mass: 2 t, height: 3 m,"),
+        ("-20 kN .. 20 kN", "-80 kN .. 80 kN"),
+        (
+            "shake quake {",
+            "preload load {\n  storey = 1\n  force = 60 kN\n}\n\nshake quake {",
+        ),
+        ("require \"drift\"", "unload rest { }\n\nrequire \"drift\""),
+        SHORT,
+    ]);
+    stage_of(&plan, GROUND)
+}
+
+/// The controller holds the load while nobody asks it anything.
+#[test]
+fn an_axial_load_is_held_by_its_controller_and_killed_the_run_goes_on_under_it() {
+    let whole = under_load();
+    let ran = wait(&mut whole.run_with(&["--yes"]));
+    succeeded(&ran);
+    for expected in [
+        "AXIAL of storey 1 LOADS it to 60 kN at 2000000 N/s and holds this in FORCE CONTROL until `unload`, also if psd ends",
+        "lower by 20.00 kN/m (20.00 kN/m expected)",
+    ] {
+        assert!(ran.output.contains(expected), "{}", ran.output);
+    }
+    let proven = whole.proven();
+    assert!(
+        proven.contains("recomputed from the run log, byte for byte"),
+        "{proven}"
+    );
+    same_but_for(
+        &results(&whole.path("run")),
+        &virtual_of(&whole, "simulated"),
+        |name, size| {
+            if name.contains("energy_error") || name.contains("nrms_error") {
+                1e-6
+            } else {
+                2e-8 + 1e-6 * size
+            }
+        },
+    );
+    // While the load grows, and while the floors move under it.
+    for moves in [10, 24] {
+        killed_it_goes_on(&under_load(), moves, &whole);
+    }
 }

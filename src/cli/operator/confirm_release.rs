@@ -22,7 +22,8 @@ pub fn ask(
     rig: &mut dyn Rig,
     watcher: &mut Watcher,
 ) -> Result<String, Failure> {
-    let next = next(assured, found, decision);
+    let axial = plan.rig.axial_axes(&plan.limits).count();
+    let next = next(assured, found, decision, axial);
     let question = format!("resume on rig {}: {next}", plan.rig.name);
     let motion = Motion::of(plan, rig.identity(), next);
     loop {
@@ -53,14 +54,20 @@ fn refused(watcher: &mut Watcher, reason: String) -> Failure {
     Failure::NotReleased { reason }
 }
 
-/// The present and the last logged reading, and the next motion. Its speed is in the list of the motion, once.
-fn next(assured: &[Assurance], found: &Reading, decision: &ResumeDecision) -> String {
-    let joined = |positions: &[f64]| {
-        positions
-            .iter()
-            .map(|position| readable(*position, Dimension::LENGTH))
-            .collect::<Vec<_>>()
-            .join(", ")
+/// The present and the last logged reading, and the next motion. Its speed is in the list of the motion, once. The last `axial` targets are
+/// forces.
+fn next(assured: &[Assurance], found: &Reading, decision: &ResumeDecision, axial: usize) -> String {
+    let joined = |targets: &[f64]| {
+        let lateral = targets.len().saturating_sub(axial);
+        let text = |(axis, target): (usize, &f64)| {
+            if axis < lateral {
+                readable(*target, Dimension::LENGTH)
+            } else {
+                format!("AXIAL {}", readable(*target, Dimension::FORCE))
+            }
+        };
+        let texts: Vec<String> = targets.iter().enumerate().map(text).collect();
+        texts.join(", ")
     };
     let next = match (&decision.sends, &decision.target_status) {
         (Some((to, _)), TargetStatus::NotExecuted) => {
@@ -104,8 +111,16 @@ fn next(assured: &[Assurance], found: &Reading, decision: &ResumeDecision) -> St
     let recorded = recorded.map_or_else(String::new, |(positions, forces)| {
         format!("; last logged at {}", position_and_force(positions, forces))
     });
+    let loads = found.force.iter().rev().take(axial).rev();
+    let loads = loads.map(|force| {
+        format!(
+            "; AXIAL holds {} in FORCE CONTROL",
+            readable(*force, Dimension::FORCE)
+        )
+    });
     format!(
-        "found at {}{recorded}; {next}{faster}",
-        position_and_force(&found.displacement, &found.force)
+        "found at {}{}{recorded}; {next}{faster}",
+        position_and_force(&found.displacement, &found.force),
+        loads.collect::<String>()
     )
 }

@@ -2,7 +2,8 @@
 //! of a plan, the index of an axis. Out: its polarity, limits, pre-test check, reading rules and calibration.
 
 use crate::{
-    Calibration, DeviceLink, Interval, Limits, Link, PretestCheck, ReadingRules, RealLink, RigPlan,
+    Calibration, DeviceLink, Frame, Interval, Limits, Link, Part, PretestCheck, ReadingRules,
+    RealLink, RigPlan, Storey,
 };
 
 /// The entries of one axis of a real rig. None: the rig's entry applies.
@@ -44,6 +45,35 @@ pub struct AxialAxis {
     pub tolerance: f64,
     /// φ of the P-Δ φ N u/h in the lateral reading.
     pub p_delta: f64,
+}
+
+/// The column of an axial axis on the rig.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxialColumn {
+    /// Its position among the tested storeys, from 0 at the lowest.
+    pub tested: usize,
+    /// Height on the rig \[m\].
+    pub height: f64,
+    /// φ of the P-Δ φ N u/h in the lateral reading.
+    pub p_delta: f64,
+}
+
+impl AxialAxis {
+    /// The column that it loads; None if the storey is not tested or has no height.
+    #[must_use]
+    pub fn column(&self, frame: &Frame) -> Option<AxialColumn> {
+        let storey = frame.storeys.get(self.storey)?;
+        let is_tested = |storey: &&Storey| storey.part != Part::Computed;
+        is_tested(&storey).then_some(())?;
+        Some(AxialColumn {
+            tested: frame.storeys[..self.storey]
+                .iter()
+                .filter(is_tested)
+                .count(),
+            height: storey.height? * storey.part.scale().displacement,
+            p_delta: self.p_delta,
+        })
+    }
 }
 
 /// The calibrations of one axis. None: the rig's entry applies.

@@ -53,6 +53,13 @@ impl RealLink {
             .collect()
     }
 
+    /// Number of axes that are not axial. Those are the last ones.
+    #[must_use]
+    pub fn lateral_axes(&self) -> usize {
+        let lateral = self.axes.iter().take_while(|axis| axis.axial.is_none());
+        lateral.count().max(1)
+    }
+
     /// The device that moves the axis with this index.
     #[must_use]
     pub fn moved_by(&self, axis: usize) -> &DeviceLink {

@@ -54,11 +54,12 @@ impl Dialect {
         self.abilities().name
     }
 
-    /// Why an axis in force control is refused. The controller itself must leave force control at the band of the axis, or without host,
-    /// cell or frame, and then hold the displacement: a softening specimen runs away before psd can act.
+    /// Why an axis in force control is refused. The controller itself must leave force control at the band of the axis, or without its load
+    /// cell, and then hold the displacement: a softening specimen runs away before psd can act. Without its host it must keep the load.
     #[must_use]
     pub const fn no_force_control(&self) -> Option<&'static str> {
         match self {
+            Self::Native => None,
             Self::Instron => {
                 Some("psd switches its watchdog off, and only its position mode is on record")
             }

@@ -130,7 +130,7 @@ impl VirtualLink {
                 )
             }
             Link::Real(link) => {
-                let axes = || (0..link.axes.len().max(1)).map(|axis| link.readings_of(axis));
+                let axes = || (0..link.lateral_axes()).map(|axis| link.readings_of(axis));
                 let noise = axes().map(|rules| rules.noise).fold(0.0, f64::max);
                 let resolution = axes().map(|rules| rules.resolution).fold(0.0, f64::max);
                 (

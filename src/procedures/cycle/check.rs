@@ -2,6 +2,7 @@
 
 use crate::codes::{E646, E647};
 use crate::procedures::common::violations::TooManyInProcedure;
+use crate::procedures::stepping::check::mode_check::beside_no_axial_axis;
 use psd_language::check::checker::{Checker, Context};
 use psd_language::check::declarations::curve;
 use psd_language::check::expressions::fields::whole;
@@ -52,6 +53,7 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         checker.optional(block, schema::RATE.name),
     );
     if let Some((_, rate)) = checker.field(block, schema::RATE.name) {
+        beside_no_axial_axis(checker, rate.span);
         if checker.field(block, SPEED.name).is_none() && !checker.misspelt(block, &[SPEED.name]) {
             checker.report(RateWithoutSpeed {
                 rate: rate.span,

@@ -1,7 +1,7 @@
 //! `damping sweep NAME { … }`
 
 use crate::codes::E654;
-use crate::procedures::stepping::check::mode_check::stops_at_targets;
+use crate::procedures::stepping::check::mode_check::{beside_no_axial_axis, stops_at_targets};
 use psd_language::check::checker::Checker;
 use psd_plan::procedures::damping_sweep::block as schema;
 use psd_plan::schema::rig;
@@ -49,6 +49,7 @@ struct ReadApart {
 fn read_together(checker: &mut Checker, block: usize) {
     let Some(rig) = checker.real_rig else { return };
     let at = checker.scope.blocks[block].block.head;
+    beside_no_axial_axis(checker, at);
     let entry = |field| {
         checker
             .field(rig, field)

@@ -1,14 +1,16 @@
 //! `preload`: the axial force grows at the rate of its axis, in tenths with a reading each. The first tenth is the check of the axis: at
-//! each reading the guard compares the force with its target, and the displacement with its band. No lateral axis moves.
+//! each reading the guard compares the force with its target, and the displacement with its band. No lateral axis moves. On a real rig the
+//! stiffness of the lateral axes is then measured again.
 
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
+use crate::run::pretest_check;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use psd_plan::Preload;
 use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::preload::block as schema;
 use psd_plan::record::{AxialReading, EventKind, History};
+use psd_plan::{Plan, Preload};
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
 
@@ -17,10 +19,14 @@ pub(crate) const STEPS: u32 = 10;
 
 pub(crate) fn perform(
     plan: &Preload,
+    whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
 ) -> Performed {
-    let stop = load(plan, inputs, session).err();
+    let loaded = load(plan, inputs, session);
+    let stop = loaded
+        .and_then(|()| pretest_check::pass_under_load(whole, session))
+        .err();
     let at_the_end: Option<AxialReading> = session
         .guard
         .axial_readings()

@@ -12,6 +12,7 @@ mod rig_emulator;
 pub mod script;
 
 pub use emulated_rig::actuator::ActuatorSettings;
+pub use emulated_rig::axial::{ForceControl, LeftForceControl};
 pub use emulated_rig::fault::MechanicalFault;
 pub use emulated_rig::smooth_paths::{PathEnd, PathRefusal};
 pub use emulated_rig::{EmulatedRig, EmulatedRigSettings, SentMove};

@@ -8,7 +8,7 @@ use super::firmware::{
 use super::one_actuator::OneActuator;
 use super::script::Script;
 use super::{ActuatorSettings, EmulatedRig, EmulatedRigSettings, Firmware, Log, RigEmulator};
-use psd_plan::{Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
+use psd_plan::{AxisPlan, Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// The identity of an emulated controller.
 const SIMULATED: &str = "PSD-SIM";
@@ -162,9 +162,14 @@ fn emulated_rig(
             )
         };
         let converters = (0..actuators.len()).map(converter).collect();
-        return Ok(
-            EmulatedRig::of_frame(settings(nothing), frame, &actuators).with_converters(converters)
-        );
+        let axial = |(axis, own): (usize, &AxisPlan)| {
+            let start = starts.get(axis).copied().unwrap_or(0.0);
+            Some((actuator(plan, link, axis, start), own.axial?.column(frame)?))
+        };
+        let axial: Vec<_> = link.axes.iter().enumerate().filter_map(axial).collect();
+        return Ok(EmulatedRig::of_frame(settings(nothing), frame, &actuators)
+            .with_converters(converters)
+            .with_axial(&axial));
     }
     let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
     Ok(EmulatedRig::new(settings(behaviour)).with_friction(specimen.coulomb))

@@ -391,8 +391,7 @@ impl<'rig> Guard<'rig> {
         value: f64,
     ) -> RigFault {
         self.hold();
-        let axes = self.commanded.len() + self.axial.count();
-        let axis = index.and_then(|index| named_axis(index, axes));
+        let axis = index.and_then(|index| self.named_axis(index));
         RigFault::LimitBreached {
             quantity,
             value,
@@ -400,6 +399,12 @@ impl<'rig> Guard<'rig> {
             high: limit.high,
             axis,
         }
+    }
+
+    /// The number of the axis with this index, from 1, if the rig has several, the axial ones among them.
+    #[must_use]
+    pub fn named_axis(&self, index: usize) -> Option<usize> {
+        named_axis(index, self.commanded.len() + self.axial.count())
     }
 
     pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {

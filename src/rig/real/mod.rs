@@ -15,7 +15,7 @@ mod stroke;
 mod validity;
 
 use psd_physics::tracking::trajectory::Path;
-use psd_plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
+use psd_plan::{AxialAxis, Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
 use super::controllers::{Device, DeviceFault, DeviceMove, metres};
 use super::motion::from_positions;
@@ -23,15 +23,18 @@ use super::safety::failpoint::{Guarding, on};
 use super::transport::Clock;
 use super::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
-    Live, Reading, Rig, RigFault, StopRequest,
+    Live, Reading, Rig, RigFault, StopRequest, named_axis, who,
 };
 use coordinate::Coordinate;
 pub use open::commands_only;
+use poll::Point;
 pub use replies::{LoggedReading, check_replies};
 use validity::ReadingValidator;
 
 /// The rounding of six decimals of a millimetre \[m\].
 const WIRE_ROUNDING: f64 = 0.5e-9;
+/// The rounding of three decimals of a newton \[N\].
+const WIRE_ROUNDING_OF_FORCE: f64 = 0.5e-3;
 
 /// Actuators with their load cells.
 pub struct RealRig {
@@ -50,7 +53,7 @@ pub struct RealRig {
     /// Time of the last answer of the devices \[s\], by the clock.
     last_contact: f64,
     proposed: Option<ProposedMove>,
-    /// The position where it has settled \[m\]. None during a motion, and after a motion without settling.
+    /// The position where it has settled \[m\], or the force in force control \[N\]. None during a motion, and after a motion without settling.
     settled: Option<Vec<f64>>,
     /// For each axis, the start of the dwell in which it settled \[s\] and its median force \[N\].
     rested: Vec<Option<(f64, f64)>>,
@@ -82,13 +85,15 @@ struct Axis {
     calibration: Calibration,
     /// A device other than the actuator measures its force.
     has_own_load_cell: bool,
+    /// Its targets are forces \[N\].
+    axial: Option<AxialAxis>,
     validator: ReadingValidator,
     /// The last reading during the motion was outside a limit.
     outside: bool,
     /// Distance between the extreme positions of the last path \[m\]. 0 after a move.
     span: f64,
-    /// The range between the start and the target of the move, with the possible overshoot of an actuator \[m\]. None on a
-    /// path.
+    /// The range between the start and the target of the move, with the possible overshoot of an actuator \[m\]; in force control with the
+    /// tolerance \[N\]. None on a path.
     allowed_range: Option<Interval>,
     /// The last reading during the motion was outside this range.
     off: bool,
@@ -98,10 +103,44 @@ struct Axis {
 #[derive(Clone, Debug)]
 struct ProposedMove {
     going: DeviceMove,
-    /// \[m\], in the polarity of the plan.
+    /// \[m\], or \[N\] in force control, in the polarity of the plan.
     targets: Vec<f64>,
-    /// The position at the time of the proposal \[m\].
+    /// The same quantity at the time of the proposal.
     from: Vec<f64>,
+}
+
+impl Axis {
+    /// A target of the plan in the coordinate of the device.
+    fn target_at_device(&self, target: f64) -> f64 {
+        match self.axial {
+            Some(_) => self.coordinate.turned(target),
+            None => self.coordinate.at_device(target),
+        }
+    }
+
+    /// A target of the device in the coordinate of the plan.
+    fn target_in_plan(&self, target: f64) -> f64 {
+        match self.axial {
+            Some(_) => self.coordinate.turned(target),
+            None => self.coordinate.in_plan(target),
+        }
+    }
+
+    /// Distance of an encoded target from the requested one that its frame causes: \[m\] or \[N\].
+    fn wire_rounding(&self) -> f64 {
+        match self.axial {
+            Some(_) => WIRE_ROUNDING_OF_FORCE,
+            None => WIRE_ROUNDING.max(self.rules.resolution / 2.0),
+        }
+    }
+
+    /// What the controller holds of an axis at this displacement \[m\] with this force \[N\].
+    const fn controlled(&self, displacement: f64, force: f64) -> f64 {
+        match self.axial {
+            Some(_) => force,
+            None => displacement,
+        }
+    }
 }
 
 impl RealRig {
@@ -131,13 +170,37 @@ impl RealRig {
         Some(self.axes.iter().zip(&ranges).map(turned).collect())
     }
 
-    /// Positions of the devices \[m\], one per axis, in the plan's coordinate.
-    fn in_plan(&self, positions: &[f64]) -> Vec<f64> {
+    /// Targets of the devices, one per axis, in the plan's coordinate.
+    fn in_plan(&self, targets: &[f64]) -> Vec<f64> {
         self.axes
             .iter()
-            .zip(positions)
-            .map(|(axis, position)| axis.coordinate.in_plan(*position))
+            .zip(targets)
+            .map(|(axis, target)| axis.target_in_plan(*target))
             .collect()
+    }
+
+    /// What the controllers hold, one per axis: displacements \[m\], then forces in force control \[N\].
+    fn controlled(&self, point: &Point) -> Vec<f64> {
+        let readings = point.displacement.iter().zip(&point.force);
+        let each = self.axes.iter().zip(readings);
+        each.map(|(axis, (displacement, force))| axis.controlled(*displacement, *force))
+            .collect()
+    }
+
+    /// An axis whose controller does not hold the force is loaded from zero alone: psd applies no load again that a controller has left.
+    fn loaded_from_zero(&self, targets: &[f64]) -> Result<(), RigFault> {
+        let enters_loaded = |(axis, target): (&Axis, &f64)| {
+            axis.axial.is_some_and(|axial| {
+                !axis.validator.is_in_force_control() && target.abs() > axial.tolerance
+            })
+        };
+        match self.axes.iter().zip(targets).position(enters_loaded) {
+            None => Ok(()),
+            Some(index) => Err(RigFault::Device(format!(
+                "{} does not hold its axial force, and psd does not apply it again",
+                who(named_axis(index, self.axes.len()))
+            ))),
+        }
     }
 
     /// A fault of a device as a fault of the rig.
@@ -224,16 +287,18 @@ impl Rig for RealRig {
         if let Some(target) = targets.iter().find(|target| !target.is_finite()) {
             return Err(RigFault::Device(format!("invalid target: {target} m")));
         }
+        self.loaded_from_zero(targets)?;
         let speed = speed.unwrap_or(self.link.own_speed);
         // Polled before the bytes are made, because nothing is polled between them and their sending. The status flags may
         // be a reason to hold, as with any reading.
         let polled = self.poll();
-        let from = self.or_hold(polled)?.displacement;
+        let polled = self.or_hold(polled)?;
+        let from = self.controlled(&polled);
         let turned: Vec<f64> = self
             .axes
             .iter()
             .zip(targets)
-            .map(|(axis, target)| axis.coordinate.at_device(*target))
+            .map(|(axis, target)| axis.target_at_device(*target))
             .collect();
         let going = self
             .actuator
@@ -248,8 +313,7 @@ impl Rig for RealRig {
         };
         // The resolution of the devices bounds how close the decoded target can be.
         let apt = |(axis, (encoded, target)): (&Axis, (&f64, &f64))| {
-            let allowed =
-                WIRE_ROUNDING.max(axis.rules.resolution / 2.0).max(rounding) * (1.0 + 1e-6);
+            let allowed = axis.wire_rounding().max(rounding) * (1.0 + 1e-6);
             (encoded - target).abs() <= allowed
         };
         let apt = going.speed > 0.0
@@ -385,10 +449,8 @@ impl Rig for RealRig {
 
     fn declared_noise(&self) -> DeclaredNoise {
         let largest = |of: fn(&ReadingRules) -> f64| {
-            self.axes
-                .iter()
-                .map(|axis| of(&axis.rules))
-                .fold(0.0, f64::max)
+            let lateral = self.axes.iter().filter(|axis| axis.axial.is_none());
+            lateral.map(|axis| of(&axis.rules)).fold(0.0, f64::max)
         };
         DeclaredNoise {
             force: largest(|rules| rules.noise),

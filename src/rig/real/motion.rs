@@ -7,7 +7,7 @@ use super::{Axis, DeviceRole, ProposedMove, RealRig};
 use crate::controllers::SLICE;
 use crate::safety::failpoint::{Guarding, on};
 use crate::{LimitedQuantity, Reading, RigFault, named_axis, who};
-use psd_plan::Interval;
+use psd_plan::{Interval, Settle};
 use psd_text::units::{Dimension, display};
 
 /// Largest deviation of an axis from its path before it is held: a number of settling bands, and a fraction of the longest
@@ -20,16 +20,17 @@ const LEAP: f64 = 6.0;
 impl RealRig {
     /// Sends the proposed move and waits until the rig has settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
-        let (began, commanded_speed) = (
-            self.clock.now(),
-            self.proposed.as_ref().map(|proposed| proposed.going.speed),
-        );
+        let began = self.clock.now();
+        let farthest = self
+            .proposed
+            .as_ref()
+            .map(|proposed| self.farthest(proposed));
         let (targets, seconds) = self.set_off()?;
         let there = self.settle_at(&targets, self.clock.now() + seconds)?;
         self.settled = Some(targets);
         // The time on the line counts as part of the motion: it was not slower than this.
-        self.seen_speed = commanded_speed
-            .map(|commanded_speed| commanded_speed * seconds / (there - began))
+        self.seen_speed = farthest
+            .map(|farthest| farthest / (there - began))
             .filter(|speed| speed.is_finite());
         Ok(())
     }
@@ -38,14 +39,15 @@ impl RealRig {
     /// `arrival` (\[s\], by the clock) is the expected arrival of the axis with the longest travel. Gives the time when all
     /// were seen to be settled \[s\].
     pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<f64, RigFault> {
-        let mut settling = Settling::each_axis(self.settle, targets);
+        let mut settling = self.settling(targets);
         let mut rested = None;
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
             self.seen_positions.push((now, point.displacement[0]));
             self.watch(&point)?;
-            let astray = first_astray(&settling, &point);
+            let controlled = self.controlled(&point);
+            let astray = first_astray(&settling, &controlled);
             // A device that cannot report whether it moves, or reports rest before it has begun, is given the duration of
             // the travel.
             let there = point.moving == Some(false) && astray.is_none();
@@ -57,14 +59,12 @@ impl RealRig {
             if !on(Guarding::Settling) && rests {
                 return Ok(now);
             }
-            let readings = settling
-                .iter_mut()
-                .zip(point.displacement.iter().zip(&point.force));
+            let readings = settling.iter_mut().zip(controlled.iter().zip(&point.force));
             let met: Vec<bool> = readings
                 .map(|(axis, (x, force))| {
                     axis.add_reading(&SettlingReading {
                         time: now,
-                        displacement: *x,
+                        controlled: *x,
                         force: *force,
                         steady,
                     })
@@ -141,12 +141,22 @@ impl RealRig {
     fn check_path_deviation(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         for (index, axis) in self.axes.iter_mut().enumerate() {
-            let at = point.displacement[index];
+            let at = axis.controlled(point.displacement[index], point.force[index]);
             let Some(range) = axis.allowed_range.filter(|range| !range.contains(at)) else {
                 axis.off = false;
                 continue;
             };
             if std::mem::replace(&mut axis.off, true) && on(Guarding::PathDeviation) {
+                if axis.axial.is_some() {
+                    self.broken = Some(point.clone().into_reading());
+                    return Err(RigFault::LimitBreached {
+                        quantity: LimitedQuantity::Force,
+                        value: at,
+                        low: range.low,
+                        high: range.high,
+                        axis: named_axis(index, count),
+                    });
+                }
                 let shown = |position| display::plain(position, Dimension::LENGTH, 6);
                 let (who, at, low, high) = (
                     who(named_axis(index, count)),
@@ -177,14 +187,29 @@ impl RealRig {
         }
     }
 
-    /// Sends the proposed move. Gives its targets \[m\] and the duration of the longest travel \[s\].
+    /// The longest travel of a move \[m\].
+    fn farthest(&self, proposed: &ProposedMove) -> f64 {
+        let ends = proposed.targets.iter().zip(&proposed.from);
+        let lateral = self
+            .axes
+            .iter()
+            .zip(ends)
+            .filter(|(axis, _)| axis.axial.is_none());
+        lateral
+            .map(|(_, (to, from))| (to - from).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// Sends the proposed move. Gives its targets and the duration of the longest travel, or change of a force \[s\].
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
+        let proposed = self.proposed.take().ok_or_else(nothing)?;
+        let farthest = self.farthest(&proposed);
         let ProposedMove {
             going,
             targets,
             from,
-        } = self.proposed.take().ok_or_else(nothing)?;
+        } = proposed;
         self.moved = true;
         self.actuator
             .start(&going)
@@ -193,27 +218,29 @@ impl RealRig {
         self.seen_positions = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);
+            axis.validator.begin_force_control();
         }
         self.look_up()?;
-        let farthest = targets
-            .iter()
-            .zip(&from)
-            .map(|(to, from)| (to - from).abs())
-            .fold(0.0, f64::max);
-        let beside = BESIDE_BANDS * self.settle.band + BESIDE_TRAVEL * farthest;
+        let mut seconds = farthest / going.speed;
+        let of_travel = BESIDE_BANDS * self.settle.band + BESIDE_TRAVEL * farthest;
         for (axis, (to, from)) in self.axes.iter_mut().zip(targets.iter().zip(&from)) {
+            let mut beside = of_travel;
+            if let Some(axial) = axis.axial {
+                beside = axial.tolerance;
+                seconds = seconds.max((to - from).abs() / axial.rate);
+            }
             let range = Interval {
                 low: to.min(*from) - beside,
                 high: to.max(*from) + beside,
             };
             (axis.allowed_range, axis.off) = (Some(range), false);
         }
-        Ok((targets, farthest / going.speed))
+        Ok((targets, seconds))
     }
 
     /// Whether a reading at the settled position shows that the rig is not settled.
     pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
-        let astray = first_astray(&Settling::each_axis(self.settle, targets), point);
+        let astray = first_astray(&self.settling(targets), &self.controlled(point));
         (astray.is_some() || point.moving == Some(true) || point.unsettled)
             .then_some(Disturbed { astray })
     }
@@ -226,7 +253,10 @@ impl RealRig {
         let force_jumps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
             rested.is_some_and(|(began, before)| {
                 let allowed = LEAP * axis.rules.noise + rate * (now - began);
-                axis.rules.noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
+                axis.axial.is_none()
+                    && axis.rules.noise > 0.0
+                    && rate > 0.0
+                    && (force - before).abs() > allowed
             })
         };
         let read = self.rested.iter().zip(&reading.force);
@@ -240,12 +270,35 @@ impl RealRig {
 
     /// The rig reports that it has arrived, and the axis with this index is at a different position.
     pub(super) fn following(&self, index: usize, point: &Point, targets: &[f64]) -> RigFault {
+        let axis = named_axis(index, self.axes.len());
+        if let Some(axial) = self.axes[index].axial {
+            return RigFault::LimitBreached {
+                quantity: LimitedQuantity::ForceError,
+                value: point.force[index] - targets[index],
+                low: -axial.tolerance,
+                high: axial.tolerance,
+                axis,
+            };
+        }
         let error = (point.displacement[index] - targets[index]).abs();
         RigFault::Following {
             error,
             band: self.settle.band,
-            axis: named_axis(index, self.axes.len()),
+            axis,
         }
+    }
+
+    /// The settling of each axis at its target: of its displacement within the band, or of its force within its tolerance.
+    pub(super) fn settling(&self, targets: &[f64]) -> Vec<Settling> {
+        let of = |(axis, target): (&Axis, &f64)| {
+            let settle = axis.axial.map_or(self.settle, |axial| Settle {
+                band: axial.tolerance,
+                force_rate: 0.0,
+                ..self.settle
+            });
+            Settling::new(settle, *target)
+        };
+        self.axes.iter().zip(targets).map(of).collect()
     }
 
     /// The fault for a rig that did not settle in time. The axis with this index is the first of those that delayed settling, if that is
@@ -259,10 +312,10 @@ impl RealRig {
     }
 }
 
-/// The first axis that is not in position.
-pub(super) fn first_astray(settling: &[Settling], point: &Point) -> Option<usize> {
+/// The first axis that is not at its target. `controlled`: displacements \[m\], or forces in force control \[N\].
+pub(super) fn first_astray(settling: &[Settling], controlled: &[f64]) -> Option<usize> {
     settling
         .iter()
-        .zip(&point.displacement)
-        .position(|(axis, displacement)| !axis.in_position(*displacement))
+        .zip(controlled)
+        .position(|(axis, controlled)| !axis.in_position(*controlled))
 }

@@ -9,7 +9,7 @@ use super::{Axis, DeviceRole, RealRig, degrees_of_freedom};
 use crate::controllers::{Device, DeviceFault, DeviceIdentity, metres};
 use crate::transport::Clock;
 use crate::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
-use psd_plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
+use psd_plan::{AxialAxis, Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
 
 impl RealRig {
     /// Requests the identity of both devices, sends them the limits and reads once. If the plan's zero is the present
@@ -168,7 +168,7 @@ impl RealRig {
         })
     }
 
-    /// Sends the limits to the devices, in their own polarity.
+    /// Sends the limits to the devices, in their own polarity, and which axes are in force control.
     pub(super) fn send_limits(&mut self) -> Result<(), RigFault> {
         let own: Vec<Limits> = self
             .axes
@@ -182,7 +182,10 @@ impl RealRig {
             cell.narrow_limits(&own)
                 .map_err(|fault| self.device_fault(DeviceRole::LoadCell, &fault))?;
         }
-        Ok(())
+        let axial: Vec<Option<AxialAxis>> = self.axes.iter().map(|axis| axis.axial).collect();
+        self.actuator
+            .control_force(&axial)
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))
     }
 }
 
@@ -219,6 +222,7 @@ pub(super) fn identity_of(name: &str, link: &RealLink, identities: &[DeviceIdent
 /// The settings of each axis in the plan.
 fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     let count = plan.axes().unwrap_or(1);
+    let axial_of = |index: usize| link.axes.get(index).and_then(|axis| axis.axial);
     let axis = |index| Axis {
         coordinate: Coordinate::of_sign(plan.polarity_of(index)),
         limits: plan.limits_of(index, limits),
@@ -228,7 +232,8 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
             .load_cells()
             .iter()
             .any(|cell| cell.axes.contains(&index)),
-        validator: ReadingValidator::of_axis(named_axis(index, count)),
+        validator: ReadingValidator::of_axis(named_axis(index, count), axial_of(index).is_some()),
+        axial: axial_of(index),
         outside: false,
         span: 0.0,
         allowed_range: None,

@@ -26,6 +26,11 @@ impl RealRig {
         if let Some(reason) = &self.untrusted {
             return Err(RigFault::Device(format!("no further motion: {reason}")));
         }
+        if self.axes.iter().any(|axis| axis.axial.is_some()) {
+            return Err(RigFault::Device(
+                "no continuous motion beside an axis in force control".to_owned(),
+            ));
+        }
         let seconds = paths.first().map_or(0.0, |path| path.seconds);
         let together = paths
             .iter()

@@ -362,5 +362,8 @@ const fn either(one: Flags, other: Flags) -> Flags {
         unreferenced: one.unreferenced || other.unreferenced,
         unsettled: one.unsettled || other.unsettled,
         watchdog_tripped: one.watchdog_tripped || other.watchdog_tripped,
+        in_force_control: one.in_force_control || other.in_force_control,
+        left_at_band: one.left_at_band || other.left_at_band,
+        left_without_cell: one.left_without_cell || other.left_without_cell,
     }
 }

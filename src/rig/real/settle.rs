@@ -10,8 +10,8 @@ use psd_plan::Settle;
 pub(super) struct SettlingReading {
     /// \[s\]
     pub time: f64,
-    /// \[m\]
-    pub displacement: f64,
+    /// Displacement \[m\], or the force in force control \[N\].
+    pub controlled: f64,
     /// \[N\]
     pub force: f64,
     /// The device is at rest and reports no objection to its reading.
@@ -22,21 +22,13 @@ pub(super) struct SettlingReading {
 #[derive(Clone, Debug)]
 pub(super) struct Settling {
     settle: Settle,
-    /// \[m\]
+    /// \[m\] or \[N\], as the band of `settle`.
     target: f64,
     /// \[s\] and \[N\]
     window: VecDeque<(f64, f64)>,
 }
 
 impl Settling {
-    /// One for each axis.
-    pub(super) fn each_axis(settle: Settle, targets: &[f64]) -> Vec<Self> {
-        targets
-            .iter()
-            .map(|target| Self::new(settle, *target))
-            .collect()
-    }
-
     pub(super) const fn new(settle: Settle, target: f64) -> Self {
         Self {
             settle,
@@ -45,9 +37,9 @@ impl Settling {
         }
     }
 
-    /// Whether `displacement` \[m\] is in position. A zero band requires nothing.
-    pub(super) fn in_position(&self, displacement: f64) -> bool {
-        self.settle.band == 0.0 || (displacement - self.target).abs() <= self.settle.band
+    /// Whether the controlled quantity is at its target. A zero band requires nothing.
+    pub(super) fn in_position(&self, controlled: f64) -> bool {
+        self.settle.band == 0.0 || (controlled - self.target).abs() <= self.settle.band
     }
 
     /// Start of the dwell \[s\] and its median force \[N\]; None before its first reading.
@@ -63,11 +55,11 @@ impl Settling {
     pub(super) fn add_reading(&mut self, reading: &SettlingReading) -> bool {
         let SettlingReading {
             time,
-            displacement,
+            controlled,
             force,
             steady,
         } = *reading;
-        if !steady || !self.in_position(displacement) {
+        if !steady || !self.in_position(controlled) {
             self.window.clear();
             return false;
         }
@@ -134,7 +126,7 @@ mod tests {
         (0..100).map(|i| f64::from(i) * 0.125).find(|time| {
             settling.add_reading(&SettlingReading {
                 time: *time,
-                displacement: displacement(*time),
+                controlled: displacement(*time),
                 force: force(*time),
                 steady: true,
             })
@@ -200,25 +192,25 @@ mod tests {
         let mut settling = Settling::new(SETTLE, 0.001);
         assert!(!settling.add_reading(&SettlingReading {
             time: 0.0,
-            displacement: 0.001,
+            controlled: 0.001,
             force: 1.0,
             steady: true
         }));
         assert!(!settling.add_reading(&SettlingReading {
             time: 0.5,
-            displacement: 0.001,
+            controlled: 0.001,
             force: 1.0,
             steady: false
         }));
         assert!(!settling.add_reading(&SettlingReading {
             time: 0.75,
-            displacement: 0.001,
+            controlled: 0.001,
             force: 1.0,
             steady: true
         }));
         assert!(settling.add_reading(&SettlingReading {
             time: 1.25,
-            displacement: 0.001,
+            controlled: 0.001,
             force: 1.0,
             steady: true
         }));

@@ -3,7 +3,6 @@
 //! rest at the end of the stroke.
 
 use super::motion::first_astray;
-use super::settle::Settling;
 use super::{ProposedMove, RealRig};
 use crate::safety::failpoint::{Guarding, on};
 use crate::{CutOff, EachReading, Rig as _, RigFault};
@@ -95,14 +94,14 @@ impl RealRig {
     /// Waits at the end of a stroke until the rig is at rest there, so that the next one begins from rest. The settling of the force is
     /// not relevant for a stroke.
     fn come_to_rest(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
-        let settling = Settling::each_axis(self.settle, targets);
+        let settling = self.settling(targets);
         let deadline = arrival + self.settle.timeout;
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
             self.watch(&point)?;
             let rests = point.moving != Some(true) && now >= arrival;
-            let astray = first_astray(&settling, &point);
+            let astray = first_astray(&settling, &self.controlled(&point));
             let Some(axis) = astray.or((!rests).then_some(0)) else {
                 return Ok(());
             };

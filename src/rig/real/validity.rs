@@ -62,9 +62,20 @@ impl Invalid {
 pub(super) struct ReadingValidator {
     /// Number of the axis, from 1, if the rig has several.
     axis: Option<usize>,
+    control: Control,
     same: Option<Same>,
     /// The device's own clock \[s\].
     device_time: Option<f64>,
+}
+
+/// The quantity of an axis that its controller holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Control {
+    #[default]
+    Displacement,
+    /// It is an axial axis, and its controller was not seen to hold its force yet.
+    Entering,
+    Force,
 }
 
 /// Consecutive readings with exactly the same force.
@@ -81,10 +92,50 @@ struct Same {
 }
 
 impl ReadingValidator {
-    pub(super) fn of_axis(axis: Option<usize>) -> Self {
+    pub(super) fn of_axis(axis: Option<usize>, is_axial: bool) -> Self {
+        let control = if is_axial {
+            Control::Entering
+        } else {
+            Control::Displacement
+        };
         Self {
             axis,
+            control,
             ..Self::default()
+        }
+    }
+
+    /// The next move enters force control, if the axis is axial.
+    pub(super) fn begin_force_control(&mut self) {
+        if self.control == Control::Entering {
+            self.control = Control::Force;
+        }
+    }
+
+    /// Whether the axis was seen in force control, or entered it.
+    pub(super) fn is_in_force_control(&self) -> bool {
+        self.control == Control::Force
+    }
+
+    /// The controller holds of this axis what the plan moves it by.
+    fn controlled(&mut self, flags: Flags) -> Result<(), Invalid> {
+        if !on(Guarding::Flags) {
+            return Ok(());
+        }
+        let hold = |reason: &str| Err(Invalid::Hold(reason.to_owned()));
+        if let Some(reason) = flags.left_force_control() {
+            return hold(reason);
+        }
+        match (self.control, flags.in_force_control) {
+            (Control::Displacement, true) => {
+                hold("its controller holds a force, but the plan moves its displacement")
+            }
+            (Control::Force, false) => hold("its controller does not hold the force any more"),
+            (Control::Entering, true) => {
+                self.control = Control::Force;
+                Ok(())
+            }
+            _ => Ok(()),
         }
     }
 
@@ -99,6 +150,7 @@ impl ReadingValidator {
             .and_then(|()| number(sample))
             .and_then(|()| saturation(sample, rules));
         of_axis
+            .and_then(|()| self.controlled(sample.flags))
             .and_then(|()| self.frozen(sample, rules))
             .map_err(|invalid| invalid.named(self.axis))
     }
@@ -119,6 +171,10 @@ impl ReadingValidator {
 
     /// The force stays exactly the same while the specimen is displaced.
     fn frozen(&mut self, sample: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
+        // A controlled force changes by the noise of its cell alone.
+        if self.control != Control::Displacement && rules.noise == 0.0 {
+            return Ok(());
+        }
         let x = sample.displacement;
         let same = match self.same {
             Some(same)

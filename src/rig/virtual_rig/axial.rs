@@ -3,15 +3,10 @@
 
 use super::load_cell::LoadCell;
 use super::seed_of;
-use psd_plan::{Frame, Limits, Part, Plan, VirtualLink};
+use psd_plan::{AxialColumn, Frame, Limits, Plan, VirtualLink};
 
 pub(super) struct AxialActuator {
-    /// The spring that it loads, from 0.
-    pub spring: usize,
-    /// Height on the rig \[m\].
-    height: f64,
-    /// φ
-    p_delta: f64,
+    column: AxialColumn,
     /// \[N/s\]
     rate: f64,
     /// \[N\]
@@ -23,22 +18,21 @@ impl AxialActuator {
     /// Those of a plan; its check has refused a storey without a height or with two scales.
     pub(super) fn of(plan: &Plan, frame: &Frame, link: &VirtualLink) -> Vec<Self> {
         let axes = plan.rig.axial_axes(&Limits::NONE);
-        let tested: Vec<usize> = (0..frame.storeys.len())
-            .filter(|storey| frame.storeys[*storey].part != Part::Computed)
-            .collect();
+        let lateral = plan.degrees_of_freedom() as u64;
         let axial = |((axis, _), number): ((psd_plan::AxialAxis, Limits), u64)| {
-            let spring = tested.iter().position(|storey| *storey == axis.storey)?;
-            let storey = &frame.storeys[axis.storey];
             Some(Self {
-                spring,
-                height: storey.height? * storey.part.scale().displacement,
-                p_delta: axis.p_delta,
+                column: axis.column(frame)?,
                 rate: axis.rate,
                 force: 0.0,
                 cell: LoadCell::new(link, seed_of(link.seed, number)),
             })
         };
-        axes.zip(tested.len() as u64..).filter_map(axial).collect()
+        axes.zip(lateral..).filter_map(axial).collect()
+    }
+
+    /// The spring that it loads, from 0.
+    pub(super) const fn spring(&self) -> usize {
+        self.column.tested
     }
 
     /// Reaches this force \[N\]; the time that it takes \[s\].
@@ -49,12 +43,12 @@ impl AxialActuator {
 
     /// φ N/h \[N/m\]
     pub(super) fn p_delta_stiffness(&self) -> f64 {
-        self.p_delta * self.force / self.height
+        self.column.p_delta * self.force / self.column.height
     }
 
     /// u²/(2 h) \[m\], of the drift u.
     pub(super) fn shortening(&self, drift: f64) -> f64 {
-        drift * drift / (2.0 * self.height)
+        drift * drift / (2.0 * self.column.height)
     }
 
     /// One reading of its load cell \[N\] at the rig time \[s\].

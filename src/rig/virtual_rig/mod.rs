@@ -260,7 +260,7 @@ impl VirtualRig {
             *force = sign * axis.cell.read(*force, time);
         }
         for axial in &mut self.axial {
-            let shortening = axial.shortening(self.springs.drift(axial.spring));
+            let shortening = axial.shortening(self.springs.drift(axial.spring()));
             reading
                 .displacement
                 .push(to_quantum(shortening, resolution));
@@ -288,7 +288,7 @@ impl VirtualRig {
         let mut seconds: f64 = 0.0;
         for (axial, force) in self.axial.iter_mut().zip(forces) {
             seconds = seconds.max(axial.go_to(*force));
-            self.springs.lean(axial.spring, axial.p_delta_stiffness());
+            self.springs.lean(axial.spring(), axial.p_delta_stiffness());
         }
         if seconds > 0.0 {
             self.rest(seconds);

@@ -197,6 +197,9 @@ impl Shape<'_> {
 
     fn ended(&self, step: &StepBody) -> Result<(), String> {
         let FirstRig { axes, .. } = self.rig()?;
+        // A step has no axial axis.
+        let axial = self.plan.rig.axial_axes(&self.plan.limits).count();
+        let axes = axes.saturating_sub(axial);
         if step.axes.is_empty() || step.axes.len() + 1 == axes {
             return Ok(());
         }

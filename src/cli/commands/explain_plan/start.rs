@@ -11,7 +11,7 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
     let Some(link) = plan.rig.link.as_real() else {
         return Vec::new();
     };
-    let axes = 0..plan.rig.axes().unwrap_or(1);
+    let axes = 0..plan.degrees_of_freedom();
     let each = |of: &dyn Fn(usize) -> f64| {
         let mut datums: Vec<String> = axes
             .clone()

@@ -54,6 +54,8 @@ pub struct Model {
     pub open_loop: bool,
     /// The safe state of the rig is to unload.
     pub unloads: bool,
+    /// Number of axial axes, the last ones: their readings are beside the others.
+    pub axial: usize,
     /// The last reading, also at rest and during a move: \[m\], \[N\], one entry per axis.
     pub live: Option<Feedback>,
     /// The run has ended early: the state of the rig.
@@ -122,6 +124,7 @@ impl LimitRow {
 
 impl Model {
     pub fn new(plan: &Plan, simulated: bool) -> Self {
+        let axial = plan.rig.axial_axes(&plan.limits).count();
         Self {
             title: plan.title.clone(),
             rig: plan.rig.name.clone(),
@@ -143,7 +146,9 @@ impl Model {
                 .rig
                 .link
                 .as_real()
-                .is_some_and(|link| link.safe_state == SafeState::Unload),
+                .is_some_and(|link| link.safe_state == SafeState::Unload)
+                && axial == 0,
+            axial,
             live: None,
             ended: None,
         }
@@ -225,6 +230,7 @@ impl Model {
                 .iter()
                 .copied()
                 .zip(live.force.iter().copied())
+                .take(live.displacement.len().saturating_sub(self.axial))
                 .collect(),
             None => self
                 .last

@@ -75,11 +75,7 @@ const SIMULATED: [&str; 6] = [
 ];
 
 /// The arguments that an axial axis does not have.
-const NOT_AXIAL: [&str; 3] = [
-    schema::AXIS_STOREY,
-    schema::POLARITY.name,
-    schema::PRETEST_CHECK.name,
-];
+const NOT_AXIAL: [&str; 2] = [schema::AXIS_STOREY, schema::PRETEST_CHECK.name];
 
 /// The axial part of an axis with these limits of its displacement \[m\]: `Some(None)` if it is none.
 pub fn axial<'a>(
@@ -182,7 +178,7 @@ pub fn check_order(checker: &mut Checker, block: usize, is_axial: &[bool]) -> Op
 
 #[derive(Violation)]
 #[violation(E677, "`{}` cannot hold an axial force: {reason}", dialect.name())]
-#[help("use a virtual rig")]
+#[help("use a `native` controller with `FORCE`, or a virtual rig")]
 struct NoForceControl<'a> {
     dialect: &'a Dialect,
     reason: &'static str,

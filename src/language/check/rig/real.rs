@@ -379,8 +379,9 @@ fn pretest_check(
     block: usize,
     axes: &[CheckedAxis],
 ) -> Option<PretestCheck> {
+    let mut lateral = axes.iter().filter(|axis| axis.plan.axial.is_none());
     if checker.field(block, schema::PRETEST_CHECK.name).is_none()
-        && axes.iter().all(|axis| axis.plan.pretest_check.is_some())
+        && lateral.all(|axis| axis.plan.pretest_check.is_some())
     {
         return axes.first()?.plan.pretest_check;
     }
@@ -559,9 +560,9 @@ fn every_axis_has_a_check(checker: &Checker, block: usize) -> bool {
     let Some((_, written)) = checker.field(block, schema::AXES.name) else {
         return false;
     };
-    // By its name, or as the second limits block without a name.
+    // By its name, or as the second limits block without a name. An axial axis has no check.
     let is_check = |(index, argument): (usize, &Argument)| match &argument.name {
-        Some(name) => name.node == schema::PRETEST_CHECK.name,
+        Some(name) => [schema::PRETEST_CHECK.name, schema::AXIAL].contains(&name.node.as_str()),
         None => index == 1,
     };
     let has = |axis: &Expr| match &axis.kind {

@@ -308,6 +308,8 @@ pub fn warn(
             at,
         });
     }
+    // Neither band nor pre-test check are those of an axial axis.
+    let axes = 0..link.lateral_axes();
     let coarsest = axes
         .clone()
         .map(|axis| link.readings_of(axis).resolution)

@@ -108,7 +108,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let at = entry.value.span;
     let (noise, resolution) = match &rig.plan.link {
         Link::Virtual(link) => (link.noise, link.resolution),
-        Link::Real(link) => (0..rig.plan.axes().unwrap_or(1))
+        Link::Real(link) => (0..link.lateral_axes())
             .map(|axis| link.readings_of(axis))
             .fold((0.0, 0.0), |(noise, resolution): (f64, f64), axis| {
                 (noise.max(axis.noise), resolution.max(axis.resolution))

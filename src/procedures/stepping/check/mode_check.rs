@@ -3,7 +3,7 @@
 
 use crate::codes::{E644, E645, W716};
 use psd_language::check::checker::Checker;
-use psd_language::syntax::ast::{Argument, ExprKind};
+use psd_language::syntax::ast::{Argument, Expr, ExprKind};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::devices::DIALECT;
 use psd_plan::schema::{Kind, methods, rig, specimen};
@@ -43,6 +43,17 @@ struct StopsBetweenReadings<'a> {
     mode: Span,
 }
 
+#[derive(Violation)]
+#[violation(
+    E644,
+    "the real rig has an axial axis: beside it the controller moves to targets only"
+)]
+#[help("move to targets, or use a virtual rig")]
+struct ContinuousUnderAxialLoad {
+    #[label("reads during the motion")]
+    span: Span,
+}
+
 /// The mode that a block names, otherwise `ramp_and_hold`.
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     let Some((entry, written)) = checker.field(block, methods::MODE.name) else {
@@ -60,6 +71,7 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     {
         return checker.fail(ContinuousOnARealRig { dialect, span: at });
     }
+    beside_no_axial_axis(checker, at)?;
     let stops = [methods::PAUSE.name, methods::INSPECT.name]
         .into_iter()
         .find_map(|field| checker.field(block, field).map(|(_, entry)| (field, entry)));
@@ -71,6 +83,36 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
         });
     }
     Some(Mode::Continuous { time_scale })
+}
+
+/// Refuses a motion with readings on a real rig that has an axial axis.
+pub fn beside_no_axial_axis(checker: &mut Checker, span: Span) -> Option<()> {
+    match checker.real_rig {
+        Some(rig) if has_axial_axis(checker, rig) => {
+            checker.fail(ContinuousUnderAxialLoad { span })
+        }
+        _ => Some(()),
+    }
+}
+
+/// Whether the list of axes of a rig has an axial one.
+fn has_axial_axis(checker: &Checker<'_>, rig: usize) -> bool {
+    let Some((_, written)) = checker.field(rig, rig::AXES.name) else {
+        return false;
+    };
+    let is_axial = |axis: &Expr| {
+        let ExprKind::Call { arguments, .. } = &axis.kind else {
+            return false;
+        };
+        let mut names = arguments
+            .iter()
+            .filter_map(|argument| argument.name.as_ref());
+        names.any(|name| name.node == rig::AXIAL)
+    };
+    match &written.value.kind {
+        ExprKind::List { items, .. } => items.iter().any(is_axial),
+        _ => is_axial(&written.value),
+    }
 }
 
 /// The protocol of a real rig that follows no path and does not read displacement and force at one instant: any except `native`. An

@@ -16,7 +16,8 @@ use crate::report::wording::specimen as specimen_text;
 use psd_plan::record::equipment::{Channel, GivenIn};
 use psd_plan::schema::plan_block::EQUIPMENT;
 use psd_plan::{
-    Behind, Calibration, DeviceLink, Interval, PortPlan, ReadingRules, RealLink, VirtualLink,
+    AxialAxis, Behind, Calibration, DeviceLink, Interval, Limits, PortPlan, ReadingRules, RealLink,
+    VirtualLink,
 };
 use psd_text::units::Dimension;
 use psd_text::units::display::significant;
@@ -180,6 +181,7 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
     rows.push((wording::WATCHDOG, wording::watchdog(watchdog).into()));
     rows.push((wording::SAFE_STATE, link.safe_state.name().into()));
+    rows.extend(axial_axes(run));
     if one_axis {
         rows.push((
             wording::PRETEST_CHECK_LIMITS,
@@ -203,6 +205,10 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
         .map(|axis| calibration_terms(&run.plan.rig.calibration_of(axis)))
         .collect();
     let any_uncertainty = uncertainties.iter().any(Option::is_some);
+    let required = |axis: usize| match link.axes[axis].axial {
+        Some(_) => wording::AXIAL_AXIS.into(),
+        None => pretest_check::required(&link.pretest_check_of(axis)).into(),
+    };
     let row = |axis: usize| {
         let (readings, number) = (link.readings_of(axis), axis + 1);
         let polarity = if run.plan.rig.polarity_of(axis) < 0.0 {
@@ -214,7 +220,7 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
             Text::from(number.to_string()),
             polarity.into(),
             declared(readings.resolution, readings.noise, &readings).into(),
-            pretest_check::required(&link.pretest_check_of(axis)).into(),
+            required(axis),
             Text::given(pretest_check::passed_by_axis(run, number)),
         ];
         if any_uncertainty {
@@ -238,6 +244,16 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
     })
 }
 
+/// One row per axial axis.
+fn axial_axes(run: &Run<'_>) -> Vec<(&'static str, Text)> {
+    let axes = run.plan.rig.axial_axes(&run.plan.limits);
+    let row = |(axis, limits): (AxialAxis, Limits)| {
+        let text = specimen_text::axial_axis(run.plan, &axis, limits.displacement, &number::stated);
+        (wording::AXIAL_AXIS, text.into())
+    };
+    axes.map(row).collect()
+}
+
 fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
     let equipment = run.equipment();
@@ -252,10 +268,7 @@ fn simulated(run: &Run<'_>) -> Block {
         (wording::SIMULATED_ERRORS, simulated_errors(&link).into()),
         (wording::SETTLING, settling(run.plan.rig.settle).into()),
     ];
-    for (axis, limits) in run.plan.rig.axial_axes(&run.plan.limits) {
-        let text = specimen_text::axial_axis(run.plan, &axis, limits.displacement, &number::stated);
-        rows.push((wording::AXIAL_AXIS, text.into()));
-    }
+    rows.extend(axial_axes(run));
     rows.extend(other_equipment(run));
     rows.extend(calibration_uncertainty(&run.plan.rig.calibration));
     pairs(rows)

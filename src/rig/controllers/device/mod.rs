@@ -6,7 +6,7 @@ mod load_cell;
 
 use crate::{LastMove, LineStatistics};
 use psd_physics::tracking::trajectory::Path;
-use psd_plan::{Interval, Limits};
+use psd_plan::{AxialAxis, Interval, Limits};
 
 pub use composite::{Member, together};
 pub use load_cell::LoadCell;
@@ -105,6 +105,30 @@ pub struct Flags {
     /// The device reports that its reading has not settled.
     pub unsettled: bool,
     pub watchdog_tripped: bool,
+    /// The axis holds a force, and not a displacement.
+    pub in_force_control: bool,
+    /// It left force control because its displacement left its band.
+    pub left_at_band: bool,
+    /// It left force control because its load cell failed, or its force did not follow.
+    pub left_without_cell: bool,
+}
+
+impl Flags {
+    /// Why an axis does not hold its force any more.
+    #[must_use]
+    pub const fn left_force_control(self) -> Option<&'static str> {
+        if self.left_at_band {
+            Some(
+                "it left force control because its displacement left its band, and holds its displacement",
+            )
+        } else if self.left_without_cell {
+            Some(
+                "it left force control because its force did not follow, and holds its displacement",
+            )
+        } else {
+            None
+        }
+    }
 }
 
 /// The text in the run log if a device has lost its position.
@@ -151,7 +175,7 @@ pub trait Device: Send {
         1
     }
 
-    /// The bytes of a move to `targets` (absolute \[m\], one per axis) at `speed` (\[m/s\], of the axis with the longest
+    /// The bytes of a move to `targets` (absolute \[m\], one per axis, or \[N\] in force control) at `speed` (\[m/s\], of the axis with the longest
     /// travel; all axes arrive simultaneously), and their values when decoded again. Sends nothing.
     ///
     /// # Errors
@@ -247,6 +271,19 @@ pub trait Device: Send {
     /// # Errors
     /// It refuses them.
     fn narrow_limits(&mut self, _limits: &[Limits]) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    /// Sends the rate and the tolerance of every axis in force control, one entry per axis. Such an axis enters force control with the
+    /// next move, whose target is a force \[N\] for it. The device leaves force control by itself at the band of the axis, or without its
+    /// load cell, and then holds the displacement.
+    ///
+    /// # Errors
+    /// It has no force control, or refuses.
+    fn control_force(&mut self, axes: &[Option<AxialAxis>]) -> Result<(), DeviceFault> {
+        if axes.iter().any(Option::is_some) {
+            return Err(DeviceFault::Unfit("it has no force control".to_owned()));
+        }
         Ok(())
     }
 

@@ -22,10 +22,11 @@
 //!
 //! | Request | Reply |
 //! |---|---|
-//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move that it began (id 0: none since power-up). It deletes the limits of a run. |
+//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move that it began (id 0: none since power-up). It deletes the limits of a run, except those of an axis that holds a force. |
 //! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Limits wider than the rig's own: `ERR LIMIT`. |
-//! | `MOVE id {target} rate` | `ACK state`: all axes move to their absolute targets and arrive simultaneously; the axis with the longest travel moves at the rate. An id is greater than all earlier ones. The last id with the same targets again: `ACK` without motion; with other targets, or an older id: `ERR ID`. |
-//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows a cubic path from its present position and velocity to its target. It passes the target with the given velocity, ms milliseconds after the end of the last `GLIDE`, or after now if none is in progress. `left` is the time until that end, ms. The axis does not stop there: it continues at that velocity, and holds if no `GLIDE` follows. |
+//! | `FORCE {rate tolerance}` | `ACK state`: an axis with a rate, N/s, is one in force control from its next `MOVE` on, whose target is a force, N. A rate of 0: it holds displacements. For an axis that holds a force, a rate of 0 is `ERR ARG`. |
+//! | `MOVE id {target} rate` | `ACK state`: all axes move to their absolute targets and arrive simultaneously; the axis with the longest travel moves at the rate. An axis in force control goes to its force at its own rate. An id is greater than all earlier ones. The last id with the same targets again: `ACK` without motion; with other targets, or an older id: `ERR ID`. |
+//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows a cubic path from its present position and velocity to its target. It passes the target with the given velocity, ms milliseconds after the end of the last `GLIDE`, or after now if none is in progress. `left` is the time until that end, ms. The axis does not stop there: it continues at that velocity, and holds if no `GLIDE` follows. With an axis in force control: `ERR VERB`. |
 //! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
 //! | `STAT` | `ACK state flags`: a bit is set if it is set for any axis. |
 //! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
@@ -33,8 +34,14 @@
 //! | `REF token` | `ACK state`: the position of all axes is trusted from now on; the token identifies who declared this. |
 //!
 //! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3 lower
-//! limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` has one word:
+//! limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped, 8 in force control, 9 left force control at the band,
+//! 10 left force control without load cell; the others are 0. `ERR` has one word:
 //! `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
+//!
+//! An axis in force control keeps its force within the tolerance while the others move, and is `MOVING` until its force is reached. Any
+//! hold stops the other axes and the change of the force, and keeps the force: so do `HELLO` and the silence of the host. The axis leaves
+//! force control when its displacement leaves `d_low .. d_high`, when its load cell fails, or when its force differs from its course by
+//! more than the tolerance. It then holds its displacement, all other axes hold, and bit 9 or 10 is set until `CLR`.
 //!
 //! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (default 3000) also
 //! holds, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute exactly. A hold keeps the load;
@@ -43,7 +50,6 @@
 mod checksum;
 mod request;
 
-use crate::LastMove;
 use crate::controllers::Flags;
 use crate::controllers::number;
 use crate::safety::failpoint::{Guarding, on};
@@ -51,7 +57,7 @@ use psd_plan::Interval;
 
 pub use checksum::checksum;
 pub use request::{
-    End, LONGEST_FRAME, LONGEST_FRAME_OF_SEVERAL, Request, frame, length, lengths, sequence,
+    End, LONGEST_FRAME, LONGEST_FRAME_OF_SEVERAL, Request, force, frame, length, lengths, sequence,
 };
 pub use request::{in_turn, time};
 
@@ -145,7 +151,8 @@ pub struct Hello {
     pub serial: String,
     pub firmware: String,
     pub bounds: Bounds,
-    pub last: Option<LastMove>,
+    /// Number and targets of the last move, as written: mm, or N in force control.
+    pub last: Option<(u64, Vec<f64>)>,
 }
 
 /// The state that a rig reports.
@@ -273,9 +280,9 @@ pub fn hello(words: &[&str]) -> Option<Hello> {
     let id = number::count(id.as_bytes())?;
     let targets = targets
         .iter()
-        .map(|target| millimetres(target))
+        .map(|target| number::fixed(target.as_bytes()))
         .collect::<Option<_>>()?;
-    let last = (id > 0).then_some(LastMove { id, targets });
+    let last = (id > 0).then_some((id, targets));
     let [model, serial, firmware] = [model, serial, firmware].map(|word| (*word).to_owned());
     Some(Hello {
         model,
@@ -342,7 +349,7 @@ fn millimetres(word: &str) -> Option<f64> {
 #[must_use]
 pub fn flags(word: &str) -> Option<Flags> {
     let bits =
-        number::hexadecimal(word.strip_prefix("0x")?.as_bytes(), 4).filter(|bits| *bits < 0x100)?;
+        number::hexadecimal(word.strip_prefix("0x")?.as_bytes(), 4).filter(|bits| *bits < 0x800)?;
     let bit = |index: u16| bits >> index & 1 == 1;
     Some(Flags {
         saturated: bit(0),
@@ -353,6 +360,9 @@ pub fn flags(word: &str) -> Option<Flags> {
         unreferenced: bit(5),
         unsettled: bit(6),
         watchdog_tripped: bit(7),
+        in_force_control: bit(8),
+        left_at_band: bit(9),
+        left_without_cell: bit(10),
     })
 }
 

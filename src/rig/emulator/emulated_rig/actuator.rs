@@ -74,6 +74,13 @@ impl ActuatorModel {
         ) = (position, position, position, position, position);
     }
 
+    /// It is this far from its initial position \[m\], wherever it was.
+    pub fn come_to(&mut self, displacement: f64) {
+        let position = self.mounted_at + displacement;
+        (self.position, self.reached, self.at, self.target) =
+            (position, position, position, position);
+    }
+
     /// The displacement of the specimen \[m\].
     pub fn bends(&self) -> f64 {
         self.at - self.mounted_at

@@ -146,8 +146,13 @@ impl MechanicalFaults {
         for fault in drawn {
             self.strike(fault, time);
         }
-        let read = (sound + drifted(&self.drifts, time) + std::mem::take(&mut self.spike))
-            * self.force_factor;
+        let spike = std::mem::take(&mut self.spike);
+        self.sense_force(sound + spike, time)
+    }
+
+    /// The same for the controller itself: without the faults of a single reading.
+    pub fn sense_force(&mut self, sound: f64, time: f64) -> f64 {
+        let read = (sound + drifted(&self.drifts, time)) * self.force_factor;
         let read = self
             .clip
             .map_or(read, |limit| read.clamp(-limit.abs(), limit.abs()));

@@ -1,8 +1,9 @@
 //! The mechanical part of an emulated rig: actuators of constant speed, a specimen, sensors with noise and resolution. In:
 //! targets and time. Out: position and force of each actuator, SI. It knows no protocol. A value without an axis belongs to the
-//! first one.
+//! first one. Axial actuators are behind all others.
 
 use super::emulated_rig::actuator::{ActuatorModel, ActuatorSettings};
+use super::emulated_rig::axial::AxialActuator;
 use super::emulated_rig::fault::MechanicalFault;
 use super::emulated_rig::smooth_paths::PathQueue;
 use super::emulated_rig::structure::Structure;
@@ -50,6 +51,8 @@ pub struct EmulatedRig {
     settings: EmulatedRigSettings,
     structure: Structure,
     pub(super) actuators: Vec<ActuatorModel>,
+    /// The last of the actuators.
+    axial: Vec<AxialActuator>,
     /// Time since power-up \[s\].
     pub(super) time: f64,
     /// Restoring force of the specimen at each actuator \[N\], without noise.
@@ -129,6 +132,7 @@ impl EmulatedRig {
         let mut rig = Self {
             structure,
             actuators: (0..).zip(actuators).map(actuator).collect(),
+            axial: Vec::new(),
             settings,
             time: 0.0,
             restoring_force: Vec::new(),
@@ -237,25 +241,25 @@ impl EmulatedRig {
             .iter()
             .map(|actuator| actuator.arrives_in(seconds))
             .fold(0.0, f64::max);
+        let lateral = self.lateral();
         let before: Vec<f64> = self.actuators.iter().map(|actuator| actuator.at).collect();
-        for actuator in &mut self.actuators {
+        for actuator in &mut self.actuators[..lateral] {
             actuator.advance(seconds);
         }
-        let moved: Vec<f64> = self
-            .actuators
+        let load_changes = self.advance_axial(seconds);
+        let moved: Vec<f64> = self.actuators[..lateral]
             .iter()
             .zip(before)
             .map(|(actuator, before)| actuator.settings.sign * (actuator.at - before))
             .collect();
-        let positions: Vec<f64> = self
-            .actuators
+        let positions: Vec<f64> = self.actuators[..lateral]
             .iter()
             .map(|actuator| actuator.settings.sign * actuator.bends())
             .collect();
         let forces = self.structure.bend(&positions, &moved, going, seconds);
-        if moved.iter().any(|moved| *moved != 0.0) {
-            let cell_forces = self
-                .actuators
+        self.follow_drifts();
+        if load_changes || moved.iter().any(|moved| *moved != 0.0) {
+            let cell_forces = self.actuators[..lateral]
                 .iter_mut()
                 .zip(forces)
                 .map(|(actuator, force)| actuator.faults.specimen_force(actuator.bends(), force));
@@ -332,15 +336,14 @@ impl EmulatedRig {
     /// Stops all actuators at their present position.
     pub fn hold(&mut self) {
         self.paths.clear();
-        for actuator in &mut self.actuators {
-            actuator.hold();
-        }
+        let all: Vec<usize> = (0..self.actuators.len()).collect();
+        self.hold_those(&all);
     }
 
     /// Whether any actuator moves.
     #[must_use]
     pub fn moving(&self) -> bool {
-        self.actuators.iter().any(ActuatorModel::moving)
+        (0..self.actuators.len()).any(|actuator| self.any_moving(&[actuator]))
     }
 
     /// The present commanded position \[m\], as a controller knows it that counts its own steps.
@@ -371,6 +374,9 @@ impl EmulatedRig {
     pub fn force_of(&mut self, actuator: usize) -> f64 {
         self.readings += u64::from(actuator == 0);
         let velocities = self.velocities();
+        if let Some(force) = self.axial_force(actuator) {
+            return self.actuators[actuator].force(force, self.time);
+        }
         let cell_forces = self
             .structure
             .actuator_forces(&self.restoring_force, &velocities)[actuator];
@@ -379,9 +385,9 @@ impl EmulatedRig {
         actuator.force(at_the_cell, self.time)
     }
 
-    /// The velocity of the specimen at each actuator \[m/s\].
+    /// The velocity of the specimen at each actuator that is not axial \[m/s\].
     fn velocities(&self) -> Vec<f64> {
-        self.actuators
+        self.actuators[..self.lateral()]
             .iter()
             .map(|actuator| actuator.settings.sign * actuator.velocity())
             .collect()
@@ -428,13 +434,14 @@ impl EmulatedRig {
     pub fn any_moving(&self, actuators: &[usize]) -> bool {
         actuators
             .iter()
-            .any(|actuator| self.actuators[*actuator].moving())
+            .any(|actuator| self.actuators[*actuator].moving() || self.force_moves(*actuator))
     }
 
     /// Stops these actuators at their present position.
     pub fn hold_those(&mut self, actuators: &[usize]) {
         for actuator in actuators {
             self.actuators[*actuator].hold();
+            self.hold_force(*actuator);
         }
     }
 
@@ -463,6 +470,7 @@ fn in_24_bits(count: f64) -> i64 {
 }
 
 pub mod actuator;
+pub mod axial;
 pub mod fault;
 pub mod smooth_paths;
 pub mod structure;

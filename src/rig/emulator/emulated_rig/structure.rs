@@ -26,6 +26,10 @@ pub struct Storey {
     relaxing: RelaxationState,
     /// \[N\]
     shear: f64,
+    /// \[m\]
+    drift: f64,
+    /// φ N/h of an axial load \[N/m\]: the cells measure its P-Δ.
+    leaning: f64,
 }
 
 impl Storey {
@@ -36,11 +40,19 @@ impl Storey {
             damping: damping.with_rate_of(behaviour),
             relaxing: RelaxationState::new(behaviour),
             shear: 0.0,
+            drift: 0.0,
+            leaning: 0.0,
         }
+    }
+
+    /// Shear with the P-Δ of the axial load \[N\].
+    fn measured_shear(&self) -> f64 {
+        self.shear - self.leaning * self.drift
     }
 
     /// It comes to this drift, the last `moved` of it in the first of the durations, and rests for the second.
     fn bend(&mut self, drift: f64, moved: f64, durations: [f64; 2]) {
+        self.drift = drift;
         let [going, resting] = durations;
         let velocity = if moved == 0.0 { 0.0 } else { moved / going };
         let motions = [
@@ -85,7 +97,8 @@ impl Structure {
                 for (storey, (drift, moved)) in storeys.iter_mut().zip(apart) {
                     storey.bend(drift, moved, [going, seconds - going]);
                 }
-                of_axes(storeys, storeys.iter().map(|storey| storey.shear).collect())
+                let shears = storeys.iter().map(Storey::measured_shear).collect();
+                of_axes(storeys, shears)
             }
             Self::Matrix(rows) => rows
                 .iter()
@@ -116,6 +129,23 @@ impl Structure {
             .zip(of_axes(storeys, beside))
             .map(|(f, more)| f + more)
             .collect()
+    }
+
+    /// The axial load on a storey has this P-Δ per drift \[N/m\] from now on.
+    pub fn lean(&mut self, storey: usize, per_drift: f64) {
+        if let Self::Storeys(storeys) = self
+            && let Some(storey) = storeys.get_mut(storey)
+        {
+            storey.leaning = per_drift;
+        }
+    }
+
+    /// Drift of a storey \[m\].
+    pub fn drift(&self, storey: usize) -> f64 {
+        match self {
+            Self::Storeys(storeys) => storeys.get(storey).map_or(0.0, |storey| storey.drift),
+            Self::Matrix(_) => 0.0,
+        }
     }
 
     /// Sets the friction on the load cell of a specimen of one degree of freedom \[N\].

@@ -77,9 +77,10 @@ pub fn decide(
     let lines = lines.as_slice();
     let recorded = last_reading(lines)?;
     let held = last_final_hold(logged, last.seq)?;
+    let controlled = bands.controlled(&found.displacement, &found.force);
     let found_position = FoundPosition {
-        positions: &found.displacement,
-        bands: &bands.displacement,
+        positions: &controlled,
+        bands,
     };
     let LastTarget {
         from,
@@ -89,9 +90,9 @@ pub fn decide(
     } = last_target(logged, lines, rig, found_position)?;
     let resumed = logged.resumption.as_ref().map(|resume| &resume.found);
     let reference = held.as_ref().or(resumed).or(recorded.as_ref());
-    if let Some((held_at, _)) = &held {
+    if let Some((held_at, force)) = &held {
         // A later motion is not logged: the specimen has a different history.
-        found_position.expect_at(held_at)?;
+        found_position.expect_at(&bands.controlled(held_at, force))?;
     }
     may_move(
         &place,
@@ -132,17 +133,18 @@ fn last_target(
         place,
         sends: None,
     };
-    let recorded = last_reading(lines)?;
+    let controlled = |(x, r): &Measured| found.bands.controlled(x, r);
+    let recorded = last_reading(lines)?.as_ref().map(controlled);
     let axes = found.positions.len();
     if let Some(ResumeBody {
         target_status: again @ TargetStatus::Stroke { back_to, others },
-        found: (resumed_at, _),
+        found: resumed_at,
         ..
     }) = &logged.resumption
     {
         // It was on its way back to the start of the stroke.
         let start = std::iter::once(*back_to).chain(others.iter().copied());
-        let place = Place::Between(resumed_at.clone(), start.collect());
+        let place = Place::Between(controlled(resumed_at), start.collect());
         return Ok(decided(after, again.clone(), place));
     }
     let last_intent = lines
@@ -150,11 +152,11 @@ fn last_target(
         .rposition(|line| line.kind == EntryKind::Intent);
     let Some(at) = last_intent else {
         // No target was sent: there are only readings at rest.
-        let start = recorded.map_or_else(|| vec![0.0; axes], |(x, _)| x);
+        let start = recorded.unwrap_or_else(|| vec![0.0; axes]);
         return Ok(decided(after, TargetStatus::None, Place::At(start)));
     };
     let intent: IntentBody = body(&lines[at])?;
-    let before = position_before(&lines[..at], axes)?;
+    let before = position_before(&lines[..at], axes, found.bands)?;
     let target = intent.to;
     if intent.samples.is_some()
         && lines[at..]
@@ -167,7 +169,7 @@ fn last_target(
             .count();
         let reached = recorded.filter(|_| readings_done > 0);
         let motion = InterruptedMotion {
-            reached: reached.map_or_else(|| before.clone(), |(x, _)| x),
+            reached: reached.unwrap_or_else(|| before.clone()),
             target,
             paths: intent.path.as_deref(),
             samples: intent.samples.unwrap_or(0),
@@ -196,7 +198,7 @@ fn last_target(
     }
     // If it was sent again, it began where the rig was found then.
     let resumed = logged.resumption.as_ref();
-    let before = resumed.map_or(before, |resume| resume.found.0.clone());
+    let before = resumed.map_or(before, |resume| controlled(&resume.found));
     let on_the_way = || Place::Between(before.clone(), target.clone());
     let (target_status, place) = match (&rig.last_move, intent.id) {
         (Some(moved), Some(id))
@@ -316,7 +318,7 @@ fn last_reading(lines: &[Line]) -> Result<Option<Measured>, UnreadableLog> {
 }
 
 /// The position of the rig before an INTENT: the targets before it, or the first reading.
-fn position_before(lines: &[Line], axes: usize) -> Result<Vec<f64>, UnreadableLog> {
+fn position_before(lines: &[Line], axes: usize, bands: &Bands) -> Result<Vec<f64>, UnreadableLog> {
     if let Some(line) = lines
         .iter()
         .rev()
@@ -327,6 +329,6 @@ fn position_before(lines: &[Line], axes: usize) -> Result<Vec<f64>, UnreadableLo
     let first = lines.iter().find(|line| line.kind == EntryKind::Sample);
     first.map_or_else(
         || Ok(vec![0.0; axes]),
-        |line| body::<SampleBody>(line).map(|sample| sample.x),
+        |line| body::<SampleBody>(line).map(|sample| bands.controlled(&sample.x, &sample.r)),
     )
 }

@@ -22,8 +22,10 @@ pub(super) type Measured = (Vec<f64>, Vec<f64>);
 /// Largest distance of the rig from its logged position and force, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// \[m\]
+    /// Of what the controllers hold: \[m\], or \[N\] of the axial axes.
     pub displacement: Vec<f64>,
+    /// Number of axial axes, the last ones.
+    pub axial: usize,
     /// \[N\], for the relaxation since then.
     pub force: Vec<f64>,
     /// Stiffness of the pre-test check \[N/m\]: the change of force in a motion since then.
@@ -39,10 +41,21 @@ impl Bands {
         let readings = axes.map(|axis| (link.readings_of(axis), link.pretest_check_of(axis)));
         let mut bands = Self {
             displacement: Vec::new(),
+            axial: 0,
             force: Vec::new(),
             stiffness: Vec::new(),
         };
-        for (read, pretest_check) in readings {
+        for (axis, (read, pretest_check)) in readings.enumerate() {
+            if let Some(axial) = link.axes.get(axis).and_then(|axis| axis.axial) {
+                bands.displacement.push(axial.tolerance);
+                bands.axial += 1;
+                bands.force.push(f64::INFINITY);
+                bands.stiffness.push(Interval {
+                    low: 0.0,
+                    high: 0.0,
+                });
+                continue;
+            }
             bands
                 .displacement
                 .push(rig.settle.band.max(4.0 * read.resolution));
@@ -50,6 +63,17 @@ impl Bands {
             bands.stiffness.push(pretest_check.stiffness);
         }
         bands
+    }
+
+    /// What the controllers hold at a measured position: displacements \[m\], then the forces of axial axes \[N\].
+    pub(super) fn controlled(&self, displacement: &[f64], force: &[f64]) -> Vec<f64> {
+        let lateral = displacement.len().saturating_sub(self.axial);
+        let axial = force.get(lateral..).unwrap_or_default();
+        displacement[..lateral]
+            .iter()
+            .chain(axial)
+            .copied()
+            .collect()
     }
 
     /// The same, for a specimen that was softer in the last logged motion: after yield the force follows its tangent. No stiffness is below
@@ -117,9 +141,10 @@ pub(super) fn may_move(
     bands: &Bands,
     accept_relaxation: bool,
 ) -> Result<(), ResumeRefusal> {
+    let controlled = bands.controlled(&found.displacement, &found.force);
     let position = FoundPosition {
-        positions: &found.displacement,
-        bands: &bands.displacement,
+        positions: &controlled,
+        bands,
     };
     match place {
         Place::At(at) => position.expect_at(at)?,
@@ -239,13 +264,25 @@ fn possible_hold(path: &Path) -> (f64, f64) {
 
 #[derive(Clone, Copy)]
 pub(super) struct FoundPosition<'a> {
-    /// \[m\], one per axis.
+    /// What the controllers hold, one per axis: \[m\], or \[N\] of axial axes.
     pub(super) positions: &'a [f64],
-    /// \[m\], one per axis.
-    pub(super) bands: &'a [f64],
+    pub(super) bands: &'a Bands,
 }
 
 impl FoundPosition<'_> {
+    const fn is_axial(self, axis: usize) -> bool {
+        axis + self.bands.axial >= self.positions.len()
+    }
+
+    fn without_load(self, axis: usize, low: f64, high: f64) -> ResumeRefusal {
+        ResumeRefusal::WithoutLoad {
+            found: self.positions[axis],
+            low,
+            high,
+            axis: named_axis(axis, self.positions.len()),
+        }
+    }
+
     pub(super) fn is_at(self, recorded: &[f64]) -> bool {
         self.first_axis_off(recorded).is_none()
     }
@@ -253,7 +290,7 @@ impl FoundPosition<'_> {
     /// The first axis that is not at its position in `recorded`. An axis without a position counts as not there.
     fn first_axis_off(self, recorded: &[f64]) -> Option<usize> {
         let near = |axis, recorded: &f64, position: &f64| {
-            (position - recorded).abs() <= band(self.bands, axis)
+            (position - recorded).abs() <= band(&self.bands.displacement, axis)
         };
         let at = |(axis, position): (usize, &f64)| {
             recorded
@@ -271,7 +308,10 @@ impl FoundPosition<'_> {
             self.positions[axis_index],
             recorded.get(axis_index).copied().unwrap_or(f64::NAN),
         );
-        let band = band(self.bands, axis_index);
+        let band = band(&self.bands.displacement, axis_index);
+        if self.is_axial(axis_index) {
+            return Err(self.without_load(axis_index, recorded - band, recorded + band));
+        }
         Err(ResumeRefusal::Elsewhere {
             recorded,
             found,
@@ -283,9 +323,12 @@ impl FoundPosition<'_> {
     pub(super) fn expect_between(self, from: &[f64], to: &[f64]) -> Result<(), ResumeRefusal> {
         let axes = self.positions.iter().zip(from.iter().zip(to));
         for (axis_index, (found, (from, to))) in axes.enumerate() {
-            let band = band(self.bands, axis_index);
+            let band = band(&self.bands.displacement, axis_index);
             let (low, high) = (from.min(*to) - band, from.max(*to) + band);
             if !(low <= *found && *found <= high) {
+                if self.is_axial(axis_index) {
+                    return Err(self.without_load(axis_index, low, high));
+                }
                 let axis = named_axis(axis_index, self.positions.len());
                 return Err(ResumeRefusal::Lost {
                     from: *from,

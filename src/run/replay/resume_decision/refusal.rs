@@ -55,6 +55,16 @@ pub enum ResumeRefusal {
         axis: Option<usize>,
     },
     #[error(
+        "{} holds {}, but the run log allows {} .. {}: the axial load of the run is not on the specimen any more",
+        who(*.axis), force(*.found), force(*.low), force(*.high)
+    )]
+    WithoutLoad {
+        found: f64,
+        low: f64,
+        high: f64,
+        axis: Option<usize>,
+    },
+    #[error(
         "the force{} is {}, but its last logged value, {}, allows {} .. {} here: inspect the specimen and the load cell, then confirm with \
          --accept-relaxation",
         of_axis(*.axis), force(*.found), force(*.recorded), force(*.low), force(*.high)

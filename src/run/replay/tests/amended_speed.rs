@@ -87,6 +87,7 @@ fn slowed_down(call: usize, after: bool) -> Option<SlowedDown> {
     let found = rig.read().unwrap();
     let bands = Bands {
         displacement: vec![1e-9],
+        axial: 0,
         force: vec![1e-6],
         stiffness: vec![Interval::ALL],
     };

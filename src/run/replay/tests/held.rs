@@ -236,6 +236,7 @@ fn decided_of(
     };
     let bands = Bands {
         displacement: vec![1e-6],
+        axial: 0,
         force: vec![1e-3],
         stiffness: vec![Interval {
             low: 300.0,

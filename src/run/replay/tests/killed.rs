@@ -62,6 +62,7 @@ fn go_on_and_compare(
     let axes = found.displacement.len();
     let bands = Bands {
         displacement: vec![1e-9; axes],
+        axial: 0,
         force: vec![1e-6; axes],
         stiffness: vec![Interval::ALL; axes],
     };

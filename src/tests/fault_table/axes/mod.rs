@@ -1,6 +1,7 @@
 //! Several axes on one rig. A run of two storeys over the real driver and the simulated controller equals the virtual run. A fault of one
 //! axis holds all axes, and the message names that axis. A run killed at any write repeats no move.
 
+mod axial;
 mod continuous;
 mod control_points;
 mod elements;
@@ -332,6 +333,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
         bands,
         Bands {
             displacement: vec![4e-4, 5e-6],
+            axial: 0,
             force: vec![60.0, 5.0],
             stiffness: vec![
                 Interval {

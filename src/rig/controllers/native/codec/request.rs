@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::checksum::checksum;
 use super::{AxisBounds, Bounds};
 use crate::controllers::number;
+use psd_plan::AxialAxis;
 
 /// Longest request with its ending \[bytes\]: for one axis, for several axes.
 pub const LONGEST_FRAME: usize = 96;
@@ -16,7 +17,9 @@ pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
 pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
-    /// Targets of every axis and the speed, formatted by [`lengths`] and [`length`], so that each is formatted only once.
+    /// Rate \[N/s\] and tolerance \[N\] of each axis in force control.
+    Force(&'a [Option<AxialAxis>]),
+    /// Targets of every axis and the speed, formatted by [`length`] and [`force`], so that each is formatted only once.
     Move {
         id: u64,
         targets: &'a str,
@@ -68,6 +71,14 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
                 length(bounds.top_speed)?
             )
         }
+        Request::Force(axes) => {
+            several(axes.len());
+            let axes: Vec<String> = axes
+                .iter()
+                .map(|axis| control_of(*axis))
+                .collect::<Option<_>>()?;
+            write!(out, ">FORCE {sequence} {}", axes.join(" "))
+        }
         Request::Move { id, targets, speed } => {
             several(targets.split(' ').count());
             write!(out, ">MOVE {sequence} {id} {targets} {speed}")
@@ -105,11 +116,14 @@ fn bounds_of(axis: &AxisBounds) -> Option<String> {
         length(axis.displacement.low)?,
         length(axis.displacement.high)?,
     );
-    let (least, most) = (
-        number::write(axis.force.low, 3)?,
-        number::write(axis.force.high, 3)?,
-    );
+    let (least, most) = (force(axis.force.low)?, force(axis.force.high)?);
     Some(format!("{low} {high} {least} {most}"))
+}
+
+/// `rate tolerance`; zeros for an axis that holds displacements.
+fn control_of(axis: Option<AxialAxis>) -> Option<String> {
+    let (rate, tolerance) = axis.map_or((0.0, 0.0), |axis| (axis.rate, axis.tolerance));
+    Some(format!("{} {}", force(rate)?, force(tolerance)?))
 }
 
 /// Lengths after each other.
@@ -139,6 +153,12 @@ pub fn time(seconds: f64) -> Option<String> {
 pub fn sequence(frame: &[u8]) -> Option<u32> {
     let word = frame.split(|byte| matches!(byte, b' ' | b'*')).nth(1)?;
     number::count(word).and_then(|count| u32::try_from(count).ok())
+}
+
+/// \[N\] or \[N/s\] in text.
+#[must_use]
+pub fn force(value: f64) -> Option<String> {
+    number::write(value, 3)
 }
 
 /// \[m\] or \[m/s\] as mm or mm/s in text.

@@ -160,13 +160,7 @@ fn a_rig_identifies_itself() {
             top_speed: 0.12
         }
     );
-    assert_eq!(
-        rig.last,
-        Some(LastMove {
-            id: 17,
-            targets: vec![1.25e-3]
-        })
-    );
+    assert_eq!(rig.last, Some((17, vec![1.25])));
     assert_eq!(
         hello_of(&body.replace("17 1.25", "0 0.00")).unwrap().last,
         None
@@ -215,7 +209,7 @@ fn a_whole_line_with_a_false_field_is_no_reading() {
         ("1.249871", "1.249871."),
         ("118203", "-1"),
         ("812344", "8.5"),
-        ("0x0000", "0x0100"),
+        ("0x0000", "0x0800"),
         ("0x0000", "0000"),
         ("0x0000", "0x00"),
         ("IDLE", "idle"),
@@ -323,7 +317,7 @@ fn the_number_of_axes_follows_from_their_fields() {
     for (axes, metres) in (1..=MOST_AXES).zip((1..=6).map(|axes| f64::from(axes) / 1e3)) {
         let rig = with(axes, axes).unwrap();
         assert_eq!(
-            (rig.bounds.axes.len(), rig.last.unwrap().targets.len()),
+            (rig.bounds.axes.len(), rig.last.unwrap().1.len()),
             (axes, axes)
         );
         assert_eq!(rig.bounds.axes[axes - 1].displacement.high, metres);

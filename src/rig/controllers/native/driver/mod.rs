@@ -12,7 +12,7 @@ use crate::controllers::{metres, number};
 use crate::safety::failpoint::{Guarding, on};
 use crate::{LastMove, LineStatistics};
 use psd_physics::tracking::trajectory::Path;
-use psd_plan::{Interval, Limits};
+use psd_plan::{AxialAxis, Interval, Limits};
 
 mod path;
 
@@ -30,6 +30,8 @@ pub struct NativeDevice {
     introduction: Vec<u8>,
     /// The limits of this run, as they were sent.
     narrowed: Option<Bounds>,
+    /// The axes in force control, one entry per axis; empty if there is none.
+    force_control: Vec<Option<AxialAxis>>,
     /// A request was not answered: rig and program may disagree on its number.
     out_of_step: bool,
     /// Held by this driver: the hold is latched.
@@ -57,6 +59,7 @@ impl NativeDevice {
             hello: None,
             introduction: Vec::new(),
             narrowed: None,
+            force_control: Vec::new(),
             out_of_step: false,
             held: false,
             next_id: 1,
@@ -77,6 +80,7 @@ impl NativeDevice {
             if let Some(bounds) = self.narrowed.clone() {
                 self.request(&Request::Limits(&bounds), ReplyKind::Ack)?;
             }
+            self.send_force_control()?;
         }
         let frame = framed(self.sequence.wrapping_add(1), request)?;
         self.exchange(&frame, kind)
@@ -98,6 +102,29 @@ impl NativeDevice {
             });
         }
         Ok(answered)
+    }
+
+    /// The last target of an axis, as it was written: mm, or N in force control. In SI.
+    fn meaning(&self, axis: usize, written: f64) -> f64 {
+        if self.is_in_force_control(axis) {
+            written
+        } else {
+            written / 1e3
+        }
+    }
+
+    fn is_in_force_control(&self, axis: usize) -> bool {
+        self.force_control.get(axis).is_some_and(Option::is_some)
+    }
+
+    /// Sends rates and tolerances, if an axis is in force control.
+    fn send_force_control(&mut self) -> Result<(), DeviceFault> {
+        if self.force_control.is_empty() {
+            return Ok(());
+        }
+        let axes = self.force_control.clone();
+        self.request(&Request::Force(&axes), ReplyKind::Ack)?;
+        Ok(())
     }
 
     fn send_hello(&mut self) -> Result<(), DeviceFault> {
@@ -262,7 +289,7 @@ fn state(reply: &Reply) -> Result<ReportedState, DeviceFault> {
 impl Device for NativeDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.client.drain()?;
-        self.narrowed = None;
+        (self.narrowed, self.force_control) = (None, Vec::new());
         self.send_hello()?;
         let reply = self.request(&Request::Status, ReplyKind::Ack)?;
         let flags = reply
@@ -273,10 +300,19 @@ impl Device for NativeDevice {
             raw: reply.line.clone(),
             reason: "it has no flags".to_owned(),
         };
-        if flags.ok_or_else(strange)?.emergency_stop {
+        let flags = flags.ok_or_else(strange)?;
+        if flags.emergency_stop {
             return Err(DeviceFault::Unfit(
                 "the emergency stop is pressed".to_owned(),
             ));
+        }
+        // A force that the controller has left is not applied again without a person's decision.
+        if let Some(reason) = flags.left_force_control()
+            && !self.client.release_allowed()
+        {
+            return Err(DeviceFault::Unfit(format!(
+                "{reason}. Take the axial load off at the controller, then clear the hold with `--let-go`"
+            )));
         }
         // Between two runs the rig receives no frames, so its watchdog has tripped. The start of a run is the operator's
         // act that clears the hold. Within a run it is never cleared.
@@ -285,7 +321,7 @@ impl Device for NativeDevice {
         }
         (self.held, self.proposed) = (false, None);
         let hello = self.hello()?.clone();
-        self.next_id = hello.last.as_ref().map_or(0, |last| last.id) + 1;
+        self.next_id = hello.last.as_ref().map_or(0, |(id, _)| *id) + 1;
         Ok(DeviceIdentity {
             raw: vec![self.introduction.clone()],
             ..native_identity(&hello, self.boot.clone())
@@ -318,24 +354,38 @@ impl Device for NativeDevice {
                 metres(targets)
             ))
         };
-        let (written, rate) = native::codec::lengths(targets)
-            .zip(native::codec::length(speed))
-            .ok_or_else(unsaid)?;
-        let read_back = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
-        let encoded: Option<Vec<f64>> = written
-            .split(' ')
-            .zip(targets.iter().copied())
-            .map(read_back)
-            .collect();
-        let (targets, speed) = encoded.zip(read_back((&rate, speed))).ok_or_else(unsaid)?;
-        if !bounds
-            .axes
-            .iter()
-            .zip(&targets)
-            .all(|(axis, target)| axis.displacement.contains(*target))
-        {
+        // A length in mm, or a force in N: as written, and read back.
+        let target = |(axis, target): (usize, &f64)| {
+            let (text, per_unit) = if self.is_in_force_control(axis) {
+                (native::codec::force(*target)?, 1.0)
+            } else {
+                (native::codec::length(*target)?, 1e3)
+            };
+            let encoded = number::read_back(&text, per_unit, *target)?;
+            Some((text, encoded))
+        };
+        let each: Option<(Vec<String>, Vec<f64>)> =
+            targets.iter().enumerate().map(target).collect();
+        let (written, targets) = each.ok_or_else(unsaid)?;
+        let written = written.join(" ");
+        let rate = native::codec::length(speed).ok_or_else(unsaid)?;
+        let speed = number::read_back(&rate, 1e3, speed).ok_or_else(unsaid)?;
+        let is_inside = |(axis, (bounds, target)): (usize, (&AxisBounds, &f64))| {
+            let allowed = if self.is_in_force_control(axis) {
+                bounds.force
+            } else {
+                bounds.displacement
+            };
+            allowed.contains(*target)
+        };
+        if !bounds.axes.iter().zip(&targets).enumerate().all(is_inside) {
+            let units = if self.force_control.is_empty() {
+                "mm"
+            } else {
+                "mm or N"
+            };
             return Err(DeviceFault::Refused {
-                reason: format!("{written} mm is outside the limits that the rig reports"),
+                reason: format!("{written} {units} is outside the limits that the rig reports"),
             });
         }
         // A speed that rounds to zero would never arrive.
@@ -443,13 +493,36 @@ impl Device for NativeDevice {
         Ok(())
     }
 
+    fn control_force(&mut self, axes: &[Option<AxialAxis>]) -> Result<(), DeviceFault> {
+        if axes.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        self.force_control = axes.to_vec();
+        self.send_force_control().map_err(|fault| match fault {
+            DeviceFault::Refused { reason } => {
+                let firmware = self.hello.as_ref().map_or("", |hello| &hello.firmware);
+                DeviceFault::Unfit(format!(
+                    "its firmware {firmware} cannot hold an axial force: {reason}"
+                ))
+            }
+            fault => fault,
+        })
+    }
+
     fn reported_range(&self) -> Option<Vec<Interval>> {
         let axes = &self.hello.as_ref()?.bounds.axes;
         Some(axes.iter().map(|axis| axis.displacement).collect())
     }
 
     fn last_move(&self) -> Option<LastMove> {
-        self.hello.as_ref().and_then(|hello| hello.last.clone())
+        let (id, written) = self.hello.as_ref()?.last.as_ref()?;
+        let targets = written.iter().enumerate();
+        Some(LastMove {
+            id: *id,
+            targets: targets
+                .map(|(axis, written)| self.meaning(axis, *written))
+                .collect(),
+        })
     }
 
     fn line_statistics(&self) -> LineStatistics {

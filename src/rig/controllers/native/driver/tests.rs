@@ -476,3 +476,115 @@ fn a_hold_by_the_rig_itself_is_not_let_go_of() {
     ));
     assert_eq!(device.encode(&[0.001], 1e-3).unwrap().frames.len(), 1);
 }
+
+/// A lateral axis, and one that holds 26.25 kN within 500 N.
+const COLUMN: &str = "PSD-COLUMN 0044 1.5 -30.000000 30.000000 -80000.000 80000.000 -4.000000 4.000000 -300000.000 300000.000 120.000000 21 0.000000 26250.000";
+const AXIAL: [Option<AxialAxis>; 2] = [
+    None,
+    Some(AxialAxis {
+        storey: 0,
+        rate: 5000.0,
+        tolerance: 500.0,
+        p_delta: 1.0,
+    }),
+];
+
+fn column(status: &str) -> (NativeDevice, ScriptedPort) {
+    let (device, port) = device();
+    script_reply(&port, &format!("ACK 1 7F3A {COLUMN}"));
+    script_reply(&port, &format!("ACK 2 7F3A {status}"));
+    (device, port)
+}
+
+#[test]
+fn targets_of_an_axis_in_force_control_are_forces() {
+    let (mut device, port) = column("IDLE 0x0100");
+    device.identify().unwrap();
+    script_reply(&port, "ACK 3 7F3A IDLE");
+    device.control_force(&AXIAL).unwrap();
+    assert_eq!(
+        device.last_move().unwrap().targets,
+        [0.0, 26_250.0],
+        "HELLO told it before FORCE"
+    );
+    let going = device.encode(&[0.005, 30_000.125_4], 1e-3).unwrap();
+    assert_eq!(going.targets, [0.005, 30_000.125]);
+    script_reply(&port, "ACK 4 7F3A MOVING");
+    device.start(&going).unwrap();
+    assert_eq!(
+        sent(&port)[2..],
+        [
+            "FORCE 3 0.000 0.000 5000.000 500.000",
+            "MOVE 4 22 5.000000 30000.125 1.000000"
+        ]
+    );
+    // The limits of displacement are those of the band, and not of its targets.
+    assert!(device.encode(&[0.031, 0.0], 1e-3).is_err());
+    assert!(device.encode(&[0.0, 300_001.0], 1e-3).is_err());
+    script_reply(
+        &port,
+        "DATA 5 7F3A 240117 5.000000 0.125 103 0x0000 0.004167 30000.125 893001 0x0100 IDLE",
+    );
+    let flags = device.sample().unwrap().channels[1].flags;
+    assert!(flags.in_force_control && flags.left_force_control().is_none());
+}
+
+#[test]
+fn an_interrupted_conversation_states_the_force_control_again() {
+    let (mut device, port) = column("IDLE 0x0100");
+    device.identify().unwrap();
+    script_reply(&port, "ACK 3 7F3A IDLE");
+    device.control_force(&AXIAL).unwrap();
+    script_reply(&port, "ERR 4 7F3A SEQ");
+    assert!(device.sample().is_err());
+    script_reply(&port, &format!("ACK 5 7F3A {COLUMN}"));
+    script_reply(&port, "ACK 6 7F3A IDLE");
+    script_reply(
+        &port,
+        "DATA 7 7F3A 240117 0.0 0.0 1 0x0000 0.0 26250.000 1 0x0100 IDLE",
+    );
+    device.sample().unwrap();
+    assert_eq!(
+        sent(&port)[4..],
+        [
+            "HELLO 5",
+            "FORCE 6 0.000 0.000 5000.000 500.000",
+            "MEAS 7 1"
+        ]
+    );
+}
+
+#[test]
+fn a_firmware_without_force_control_is_unfit() {
+    let (mut device, port) = column("IDLE 0x0000");
+    device.identify().unwrap();
+    device.control_force(&[None, None]).unwrap();
+    script_reply(&port, "ERR 3 7F3A VERB");
+    assert_eq!(
+        device.control_force(&AXIAL),
+        Err(DeviceFault::Unfit(
+            "its firmware 1.5 cannot hold an axial force: the rig does not know this request (`ERR VERB`)"
+                .to_owned()
+        ))
+    );
+}
+
+/// A load that the controller has left is not lost from view by the CLR of the next run.
+#[test]
+fn a_load_that_was_left_is_cleared_by_a_person_alone() {
+    for (status, reason) in [
+        ("HELD 0x0200", "its band"),
+        ("HELD 0x0480", "did not follow"),
+    ] {
+        let (mut device, port) = column(status);
+        let refused = device.identify().unwrap_err().to_string();
+        assert!(refused.contains(reason), "{refused}");
+        assert_eq!(sent(&port).len(), 2);
+        let (device, port) = column(status);
+        script_reply(&port, "ACK 3 7F3A IDLE");
+        let allowed = crate::StopRequest::default().with_release_allowed(true);
+        let mut device = NativeDevice::new(device.client.observing(allowed));
+        device.identify().unwrap();
+        assert_eq!(sent(&port)[2], "CLR 3");
+    }
+}

@@ -3,6 +3,7 @@
 //! number. It never clamps: it refuses a command that it cannot carry out exactly.
 
 mod bounds;
+mod force_control;
 mod frame;
 mod glide;
 mod readings;
@@ -66,7 +67,9 @@ pub struct Native {
     own: Bounds,
     /// The limits of the run, within those of the rig.
     run: Bounds,
-    /// Number and targets \[mm\] of the last started move.
+    /// Rate \[N/s\] and tolerance \[N\] of each axis that `FORCE` put in force control.
+    force: Vec<Option<(f64, f64)>>,
+    /// Number and targets \[mm\], or \[N\] in force control, of the last started move.
     last_move: Option<(u64, Vec<f64>)>,
     referenced: bool,
     held: bool,
@@ -93,6 +96,7 @@ impl Native {
             line: Vec::new(),
             last: None,
             run: own.clone(),
+            force: vec![None; own.axes.len()],
             own,
             last_move: None,
             referenced: true,
@@ -169,7 +173,7 @@ impl Native {
         let axes = self.actuators.len();
         match (verb, arguments) {
             ("HELLO", []) => {
-                self.run = self.own.clone();
+                self.forget_limits(rig);
                 return Ok(("ACK", self.hello()));
             }
             ("LIM", [limits @ .., speed]) if limits.len() == 4 * axes => {
@@ -191,10 +195,13 @@ impl Native {
                     top_speed,
                 };
             }
+            ("FORCE", words) if words.len() == 2 * axes => self.control_force(words, rig)?,
             ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => {
                 self.move_to(id, targets, rate, rig)?;
             }
-            ("GLIDE", _) if !self.has_all_of(rig) => return Err("VERB".to_owned()),
+            ("GLIDE", _) if !self.has_all_of(rig) || self.has_force_axis() => {
+                return Err("VERB".to_owned());
+            }
             ("GLIDE", [id, ends @ .., time]) if ends.len() == 2 * axes => {
                 let left = self.glide(id, ends, time, rig)?;
                 return Ok(("ACK", format!("{} {:.3}", self.state(rig), left * 1e3)));
@@ -214,9 +221,18 @@ impl Native {
                 ));
             }
             ("STOP", []) => self.hold(rig),
-            ("CLR", []) => (self.held, self.watchdog_tripped) = (false, false),
+            ("CLR", []) => {
+                (self.held, self.watchdog_tripped) = (false, false);
+                for actuator in &self.actuators {
+                    rig.clear_left_force_control(*actuator);
+                }
+            }
             ("REF", [_]) => self.referenced = true,
-            ("HELLO" | "LIM" | "MOVE" | "GLIDE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => {
+            (
+                "HELLO" | "LIM" | "FORCE" | "MOVE" | "GLIDE" | "MEAS" | "STAT" | "STOP" | "CLR"
+                | "REF",
+                _,
+            ) => {
                 return Err("ARG".to_owned());
             }
             _ => return Err("VERB".to_owned()),
@@ -239,10 +255,12 @@ impl Native {
             .last_move
             .clone()
             .unwrap_or_else(|| (0, vec![0.0; limits.len()]));
-        let targets: Vec<String> = targets
-            .iter()
-            .map(|target| format!("{target:.6}"))
-            .collect();
+        let written = targets.iter().zip(&self.force);
+        let written = written.map(|(target, force)| match force {
+            Some(_) => format!("{target:.3}"),
+            None => format!("{target:.6}"),
+        });
+        let targets: Vec<String> = written.collect();
         let (serial_number, top_speed) = (&self.settings.serial_number, self.own.top_speed);
         format!(
             "PSD-SIM {serial_number} 1.3 {} {top_speed:.6} {id} {}",
@@ -270,18 +288,10 @@ impl Native {
                 return Err("ID".to_owned());
             }
         }
-        let metres: Vec<f64> = targets.iter().map(|target| target / 1e3).collect();
-        let inside = |(axis, target): (&AxisBounds, &f64)| {
-            axis.displacement.0 <= *target && *target <= axis.displacement.1
-        };
-        if let Some(axis) = self
-            .run
-            .axes
-            .iter()
-            .zip(&targets)
-            .position(|axis| !inside(axis))
+        let (moving, metres) = self.displacements(&targets);
+        if let Some(axis) = (0..targets.len()).find(|axis| !self.allows(*axis, targets[*axis], rig))
         {
-            for (actuator, target) in self.actuators.iter().zip(&metres) {
+            for (actuator, target) in moving.iter().zip(&metres) {
                 rig.refuse_of(*actuator, *target);
             }
             return Err(of_axis("LIMIT", axis, targets.len()));
@@ -295,8 +305,9 @@ impl Native {
         if let Some((_, code)) = refused.into_iter().find(|(refused, _)| *refused) {
             return Err(code.to_owned());
         }
+        self.load(&targets, rig);
         self.last_move = Some((id, targets));
-        rig.go_those(Some(id), &self.actuators, &metres, rate / 1e3);
+        rig.go_those(Some(id), &moving, &metres, rate / 1e3);
         Ok(())
     }
 }
@@ -327,6 +338,7 @@ impl Firmware for Native {
 
     fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         self.coast(rig);
+        self.hold_without_force(rig);
         if self
             .last_contact
             .is_some_and(|last_contact| rig.time() - last_contact > self.settings.watchdog)
@@ -340,6 +352,9 @@ impl Firmware for Native {
 
     fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         self.stand_still(rig);
+        for actuator in &self.actuators {
+            rig.end_force_control(*actuator);
+        }
         let was = self.boot;
         *self = Self::new(
             NativeSettings {

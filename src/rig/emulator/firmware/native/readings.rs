@@ -2,7 +2,7 @@
 //! They move nothing.
 
 use super::Native;
-use crate::emulator::EmulatedRig;
+use crate::emulator::{EmulatedRig, LeftForceControl};
 
 impl Native {
     /// Returns the medians of several readings.
@@ -56,6 +56,9 @@ impl Native {
             !self.referenced,
             self.moves(rig),
             self.watchdog_tripped,
+            rig.force_control(self.actuators[axis]).is_some(),
+            rig.left_force_control(self.actuators[axis]) == Some(LeftForceControl::Band),
+            rig.left_force_control(self.actuators[axis]) == Some(LeftForceControl::Cell),
         ];
         bits.iter()
             .rev()

@@ -1,5 +1,6 @@
 //! Tests of the native firmware against the vectors and rules of the reference.
 
+mod force_control;
 mod several_axes;
 
 use super::*;
