@@ -9,9 +9,9 @@ use super::laws::{Obeys, Witness};
 use crate::tests::testing::elastic_plan;
 use psd_plan::formula::Formula;
 use psd_plan::{
-    AxisPlan, Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, ModbusMap,
-    ModbusNumber, Move, Plan, PortPlan, PretestCheck, Procedure, ProcedureKind, ReadingRules,
-    RealLink, SafeState, Settle,
+    AxialAxis, AxisPlan, Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link,
+    ModbusMap, ModbusNumber, Move, Plan, PortPlan, PretestCheck, Procedure, ProcedureKind,
+    ReadingRules, RealLink, SafeState, Settle,
 };
 use psd_rig::emulator::script::{Script, ScriptedFault, What, When};
 use psd_rig::emulator::{Log, RigEmulator, of_plan};
@@ -132,7 +132,18 @@ impl Case {
             }
             listed
         });
-        listed.collect()
+        let axial = test.axial.map(|axial| AxisPlan {
+            polarity: Some(self.sign(self.axes.len() - 1)),
+            displacement: Some(within(2e-4)),
+            axial: Some(AxialAxis {
+                storey: axial.storey,
+                rate: 5e3,
+                tolerance: 20.0,
+                p_delta: 1.0,
+            }),
+            ..AxisPlan::default()
+        });
+        listed.chain(axial).collect()
     }
 
     /// +1 or −1 \[-\].

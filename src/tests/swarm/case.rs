@@ -84,7 +84,7 @@ pub(super) enum Amendment {
     Target(usize, f64),
     /// The own limits of an axis become ± this \[m\], if that is narrower.
     AxisLimits(usize, f64),
-    /// Steps of the ground motion with this index.
+    /// Steps of the procedure with this index, if it is a ground motion.
     Steps(usize, u32),
 }
 
@@ -152,6 +152,8 @@ impl Case {
         };
         let devices = match &test {
             Test::Moves(_) => of_one_axis(&mut draw),
+            // No other protocol has force control.
+            Test::Frame(test) if test.axial.is_some() => Devices::Native,
             Test::Frame(_) => of_a_frame(&mut draw),
         };
         let homed = matches!(
@@ -162,15 +164,16 @@ impl Case {
                 | Devices::GrblAndGauge
         );
         let here = homed || draw.chance(0.25);
-        let axes = (0..test.axes()).map(|_| Axis {
+        let lateral = test.lateral_axes();
+        let axes = (0..test.axes()).map(|axis| Axis {
             start: match (homed, here) {
                 // A homed Grbl has left its switch by 1 mm.
                 (true, _) => -1e-3,
-                (_, true) => f64::from(draw.between(1, 30)) * 1e-4,
+                (_, true) if axis < lateral => f64::from(draw.between(1, 30)) * 1e-4,
                 _ => 0.0,
             },
             turned: draw.chance(0.2),
-            farthest: (matches!(test, Test::Frame(_)) && draw.chance(0.3))
+            farthest: (matches!(test, Test::Frame(_)) && axis < lateral && draw.chance(0.3))
                 .then(|| f64::from(draw.between(2, 9)) * 1e-4),
         });
         let axes = axes.collect();
@@ -268,8 +271,16 @@ impl Case {
 }
 
 impl Test {
-    /// Axes of the rig.
+    /// Axes of the rig, the axial one behind the others.
     pub(super) fn axes(&self) -> usize {
+        match self {
+            Self::Moves(_) => 1,
+            Self::Frame(test) => self.lateral_axes() + usize::from(test.axial.is_some()),
+        }
+    }
+
+    /// Axes of the rig that move a storey sideways, or an element.
+    fn lateral_axes(&self) -> usize {
         match self {
             Self::Moves(_) => 1,
             Self::Frame(test) => test.stiffness_at_axes().len(),
@@ -375,7 +386,7 @@ fn session(draw: &mut Draw, devices: Devices, test: &Test, first: bool) -> Sessi
     let (mut before, mut amended) = (Vec::new(), Vec::new());
     if !first {
         for _ in 0..draw.few() {
-            before.push(change(draw, test.axes()));
+            before.push(change(draw, test));
         }
         if draw.chance(0.35) {
             amended.push(amendment(draw, test));
@@ -500,7 +511,7 @@ fn of_the_disk(draw: &mut Draw, length: u32) -> Fault {
     }
 }
 
-fn change(draw: &mut Draw, axes: usize) -> Change {
+fn change(draw: &mut Draw, test: &Test) -> Change {
     match draw.between(0, 6) {
         0 => Change::Waits(f64::from(draw.between(1, 50)) * 0.1),
         1 => Change::OtherRig {
@@ -508,11 +519,11 @@ fn change(draw: &mut Draw, axes: usize) -> Change {
         },
         2 => Change::Restarted,
         3 => Change::OtherPlace {
-            axis: draw.below(axes),
+            axis: draw.below(test.lateral_axes()),
             by: f64::from(draw.between(1, 8)) * 5e-5,
         },
         _ => Change::ForceGone {
-            axis: draw.below(axes),
+            axis: draw.below(test.axes()),
         },
     }
 }
@@ -529,11 +540,12 @@ fn amendment(draw: &mut Draw, test: &Test) -> Amendment {
             Amendment::Target(draw.below(legs.len()), f64::from(draw.between(1, 7)) * 1e-4)
         }
         (Test::Frame(_), 3) => Amendment::AxisLimits(
-            draw.below(test.axes()),
+            draw.below(test.lateral_axes()),
             f64::from(draw.between(1, 8)) * 1e-4,
         ),
-        (Test::Frame(test), _) => {
-            Amendment::Steps(draw.below(test.loads.len()), draw.between(5, 12))
-        }
+        (Test::Frame(test), _) => Amendment::Steps(
+            test.before_loads() + draw.below(test.loads.len()),
+            draw.between(5, 12),
+        ),
     }
 }

@@ -8,8 +8,8 @@ use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::record::{FloorMotion, History, ProcedureRecord, StruckFrame};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Contact, Element, Escalate, Frame, Ground, Impact,
-    ImpactTarget, Integrator, Part, ProcedureKind, Scale, Shake, ShakeDamping, Stepping, Storey,
-    StoreyTarget, Test, Unload, Until,
+    ImpactTarget, Integrator, Part, Preload, ProcedureKind, Scale, Shake, ShakeDamping, Stepping,
+    Storey, StoreyTarget, Test, Unload, Until,
 };
 use psd_text::units::Dimension;
 
@@ -50,6 +50,15 @@ pub(super) enum Load {
     Unload,
 }
 
+/// An axial axis, which loads a tested storey before all else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axial {
+    /// Index of the storey.
+    pub(super) storey: usize,
+    /// On the rig \[N\].
+    pub(super) force: f64,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FrameTest {
     /// Storeys from the ground up, or elements beside a matrix. None: the rig carries the frame of a matrix.
@@ -57,6 +66,7 @@ pub(super) struct FrameTest {
     /// Degrees of freedom of a frame of matrices; None: a frame of storeys.
     pub(super) matrix: Option<usize>,
     pub(super) weights: bool,
+    pub(super) axial: Option<Axial>,
     pub(super) integrator: Integrator,
     pub(super) loads: Vec<Load>,
 }
@@ -70,6 +80,7 @@ impl FrameTest {
         };
         let mut test = Self {
             weights: matrix.is_none() && draw.chance(0.3),
+            axial: None,
             members,
             matrix,
             integrator: draw.one_of(&[
@@ -87,7 +98,32 @@ impl FrameTest {
         if draw.chance(0.2) {
             test.loads.push(Load::Unload);
         }
+        if matrix.is_none() && draw.chance(0.3) {
+            let tested: Vec<usize> = (0..floors)
+                .filter(|storey| test.members[*storey].part != Part::Computed)
+                .collect();
+            test.axial = Some(Axial {
+                storey: draw.one_of(&tested),
+                force: 200.0 * f64::from(draw.between(1, 6)),
+            });
+        }
         test
+    }
+
+    /// The same without its axial axis.
+    pub(super) fn without_axial(&self) -> Self {
+        Self {
+            axial: None,
+            ..self.clone()
+        }
+    }
+
+    /// Number of procedures before the loads.
+    pub(super) const fn before_loads(&self) -> usize {
+        match self.axial {
+            Some(_) => 1,
+            None => 0,
+        }
     }
 
     /// Floors, or degrees of freedom.
@@ -227,11 +263,18 @@ impl FrameTest {
             }
         };
         let Some(floors) = self.matrix else {
-            let storeys = self.members.iter().map(|member| Storey {
-                part: member.part,
-                height: self.weights.then_some(HEIGHT),
-                gravity: if self.weights { WEIGHT } else { 0.0 },
-                ..Storey::new(MASS, stiffness(member), behaviour(member))
+            let storeys = self.members.iter().enumerate().map(|(storey, member)| {
+                let axial = self.axial.filter(|axial| axial.storey == storey);
+                let Scale {
+                    force, represents, ..
+                } = member.part.scale();
+                Storey {
+                    part: member.part,
+                    height: (self.weights || axial.is_some()).then_some(HEIGHT),
+                    gravity: if self.weights { WEIGHT } else { 0.0 },
+                    axial_load: axial.map_or(0.0, |axial| axial.force * represents / force),
+                    ..Storey::new(MASS, stiffness(member), behaviour(member))
+                }
             });
             return Frame::of_storeys(storeys.collect());
         };
@@ -253,7 +296,14 @@ impl FrameTest {
     /// The ground motions, and the procedure of each load.
     pub(super) fn procedures(&self) -> (Vec<Ground>, Vec<ProcedureKind>) {
         let mut grounds = Vec::new();
-        let kinds = self.loads.iter().enumerate().map(|(index, load)| {
+        let preload = self.axial.map(|axial| {
+            ProcedureKind::Preload(Preload {
+                storey: axial.storey,
+                force: axial.force,
+            })
+        });
+        let loads = (self.before_loads()..).zip(&self.loads);
+        let kinds = loads.map(|(index, load)| {
             let stepping = Stepping {
                 integrator: self.integrator,
                 max_tangent_ratio: Formula::Constant(2.0),
@@ -296,7 +346,7 @@ impl FrameTest {
                 }),
             }
         });
-        let kinds = kinds.collect();
+        let kinds = preload.into_iter().chain(kinds).collect();
         (grounds, kinds)
     }
 }

@@ -170,9 +170,9 @@ impl Released {
 #[derive(Clone, Copy, Debug)]
 struct Target {
     axis: usize,
-    /// \[m\]
+    /// \[m\], or \[N\] of an axial axis.
     to: f64,
-    /// Distance within which it is another number \[m\].
+    /// Distance within which it is another number.
     near: f64,
 }
 
@@ -180,6 +180,8 @@ struct Target {
 pub(super) struct Before {
     /// Commanded and true position of each axis, in its own coordinate \[m\].
     pub(super) positions: Vec<(f64, f64)>,
+    /// Commanded force of each axis in its own coordinate \[N\]; None: it holds a displacement.
+    pub(super) forces: Vec<Option<f64>>,
     /// It moved then, or within the time in which a position is read.
     pub(super) moving: bool,
 }
@@ -208,8 +210,10 @@ pub(super) struct Obeys {
 struct Axis {
     /// +1 or −1, and the zero of the plan in the coordinate of the axis \[m\].
     coordinate: (f64, f64),
-    /// In the coordinate of the plan \[m\].
+    /// In the coordinate of the plan \[m\]; of an axial axis \[N\].
     limits: Interval,
+    /// The highest rate of an axial axis \[N/s\].
+    rate: f64,
     /// INTENT that belongs to its last move, and its moves beyond the first of one INTENT.
     last_intent: u64,
     repeated: u64,
@@ -250,6 +254,7 @@ impl Witness {
         let axis = |coordinate| Axis {
             coordinate,
             limits: Interval::ALL,
+            rate: 0.0,
             last_intent: 0,
             repeated: 0,
             last_target: f64::NAN,
@@ -274,7 +279,15 @@ impl Witness {
     /// The limits of this plan are in force.
     pub(super) fn limits_of(&mut self, plan: &Plan) {
         for (index, axis) in self.axes.iter_mut().enumerate() {
-            axis.limits = plan.rig.limits_of(index, &plan.limits).displacement;
+            let limits = plan.rig.limits_of(index, &plan.limits);
+            let listed = plan.rig.listed_axes().get(index);
+            axis.limits = match listed.and_then(|listed| listed.axial) {
+                Some(axial) => {
+                    axis.rate = axial.rate;
+                    limits.force
+                }
+                None => limits.displacement,
+            };
         }
     }
 
@@ -337,6 +350,30 @@ impl Witness {
             };
             self.moves_to(&targets, speed, travel, disk.logged());
         }
+        for axis in 0..self.axes.len() {
+            let Some(control) = rig.force_control(axis) else {
+                continue;
+            };
+            // A hold by its present force.
+            let is_held = rig.axial_force(axis) == Some(control.target);
+            if before.forces[axis] == Some(control.target) || is_held {
+                continue;
+            }
+            let rate = self.axes[axis].rate;
+            self.check(Law::NotFaster, control.rate <= rate, || {
+                format!(
+                    "the load grows by {} N/s, the plan has {rate} N/s",
+                    control.rate
+                )
+            });
+            let (sign, _) = self.axes[axis].coordinate;
+            let target = Target {
+                axis,
+                to: sign * control.target,
+                near: 1e-3,
+            };
+            self.moves_to(&[target], 0.0, 0.0, disk.logged());
+        }
     }
 
     /// A target in the coordinate of the plan, from one in the coordinate of its axis \[m\].
@@ -386,7 +423,7 @@ impl Witness {
             self.check(
                 Law::InsideLimits,
                 low - near <= to && to <= high + near,
-                || format!("the rig moves to {to:e} m, the limits are {low} .. {high} m"),
+                || format!("the rig moves to {to:e}, the limits are {low} .. {high}"),
             );
         }
         let released = self.released.as_ref();

@@ -12,7 +12,7 @@ use super::frame::{FrameTest, Load, steps_of};
 use super::laws::{Breach, Law, Released};
 use super::operator::Operator;
 use super::tally::Tally;
-use super::world::{Endless, World, commanded};
+use super::world::{Endless, World, lateral_positions};
 use crate::run::replay::tests::measured;
 use crate::run::replay::{
     self, IntentBody, LoggedRun, Recorded, ResumeBody, SampleBody, TargetStatus,
@@ -206,7 +206,7 @@ impl<'a> Life<'a> {
     /// What happened to the rig while psd was away.
     fn change(&mut self, session: &Session, change: Change) {
         self.tally.add(change.name());
-        let at = commanded(self.world.lock().bench.rig());
+        let at = lateral_positions(self.world.lock().bench.rig());
         self.power_ups += 1;
         let boot = self.power_ups;
         let exchange = |serial_number: &str| {
@@ -235,7 +235,7 @@ impl<'a> Life<'a> {
             Change::ForceGone { .. } => {}
         }
         let unloaded = match change {
-            Change::OtherRig { loaded: false } => 0..at.len(),
+            Change::OtherRig { loaded: false } => 0..self.case.axes.len(),
             Change::ForceGone { axis } => axis..axis + 1,
             _ => 0..0,
         };
@@ -546,8 +546,9 @@ fn at_its_scale(test: &FrameTest, logged: &LoggedRun, record: &Record) -> Option
                 pairs
                     .zip([1e-12, 1e-12, 1e-6])
                     .all(|((rig, stated), near)| {
+                        // The axial axis is behind the others.
                         let mut axes = rig.iter().zip(stated);
-                        rig.len() == stated.len()
+                        rig.len() == stated.len() + test.before_loads()
                             && axes.all(|(rig, stated)| (rig - stated).abs() <= near)
                     })
             }) {

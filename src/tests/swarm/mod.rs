@@ -1,7 +1,7 @@
 //! The swarm: lives of tests that nobody wrote down. Session, guard, drivers, emulated controllers of every protocol, disk, clock and
 //! operator run in one thread and in simulated time. A seed draws a plan, a rig, and what befalls them: faults of lines, controllers,
 //! sensors and disk, kills, signals, answers, changes between two sessions, amended plans. A plan moves one axis, or it shakes or strikes a
-//! frame of which the rig carries the whole or a part. In: seeds. Out: the laws hold in each life. A
+//! frame of which the rig carries the whole or a part, perhaps under an axial load. In: seeds. Out: the laws hold in each life. A
 //! life that breaks one is reduced, and reported in one line with the command that repeats it.
 //!
 //! `PSD_SWARM_SEED=4711` lives one life; `PSD_SWARM_SEEDS=1000000` lives so many.

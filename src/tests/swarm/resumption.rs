@@ -222,18 +222,27 @@ fn other_specimen(
         (sampled.x, sampled.r) = found;
     }
     let target = match intent.filter(|intent| intent.seq > sample.seq) {
-        Some(intent) => intent.read::<IntentBody>().ok()?.to,
-        None => sampled.x.clone(),
+        Some(intent) => Some(intent.read::<IntentBody>().ok()?.to),
+        None => None,
     };
-    for (axis, at) in found.displacement.iter().enumerate() {
-        let band = 2.0 * bands.displacement[axis];
-        let (low, high) = (
-            sampled.x[axis].min(target[axis]),
-            sampled.x[axis].max(target[axis]),
+    let link = plan.rig.link.as_real()?;
+    let axial = |axis: usize| link.axes.get(axis).and_then(|axis| axis.axial);
+    for axis in 0..found.displacement.len() {
+        // What the controller of the axis holds: a displacement, or a force.
+        let held = |x: &[f64], r: &[f64]| match axial(axis) {
+            Some(_) => r[axis],
+            None => x[axis],
+        };
+        let (at, from) = (
+            held(&found.displacement, &found.force),
+            held(&sampled.x, &sampled.r),
         );
-        if !(low - band..=high + band).contains(at) {
+        let to = target.as_ref().map_or(from, |target| target[axis]);
+        let band = 2.0 * bands.displacement[axis];
+        let (low, high) = (from.min(to), from.max(to));
+        if !(low - band..=high + band).contains(&at) {
             return Some(format!(
-                "it went on from {at} m, the run log leaves axis {} in {low} .. {high} m",
+                "it went on from {at}, the run log leaves axis {} in {low} .. {high}",
                 axis + 1
             ));
         }
@@ -241,10 +250,11 @@ fn other_specimen(
     if session.operator.accept_relaxation {
         return None;
     }
-    let link = plan.rig.link.as_real()?;
     let window = |axis: usize| link.pretest_check_of(axis).stiffness;
     let travel = |axis: usize| found.displacement[axis] - sampled.x[axis];
-    for (axis, force) in found.force.iter().enumerate() {
+    let lateral = || (0..found.force.len()).filter(|axis| axial(*axis).is_none());
+    for axis in lateral() {
+        let force = found.force[axis];
         // A specimen that was softer in the readings before may be so again.
         let mut own = window(axis);
         let readings = before
@@ -260,14 +270,14 @@ fn other_specimen(
             own.low = own.low.min(tangent.max(0.0));
         }
         // The stiffness matrix is positive: another axis adds at most √(kᵢ kⱼ) Δⱼ.
-        let others = (0..found.force.len()).filter(|other| *other != axis);
+        let others = lateral().filter(|other| *other != axis);
         let others: f64 = others
             .map(|other| (own.high * window(other).high).sqrt() * travel(other).abs())
             .sum();
         let slack = 2.0 * bands.force[axis] + others;
         let ends = [own.low, own.high].map(|stiffness| sampled.r[axis] + stiffness * travel(axis));
         let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);
-        if !(low..=high).contains(force) {
+        if !(low..=high).contains(&force) {
             return Some(format!(
                 "it went on with {force} N at axis {}, expected {low} .. {high} N",
                 axis + 1

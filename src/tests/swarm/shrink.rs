@@ -87,6 +87,12 @@ fn smaller(case: &Case) -> Vec<Case> {
                 without(&|case| frame(case, &|test| _ = test.loads.pop()));
             }
             without(&|case| frame(case, &|test| test.weights = false));
+            if test.axial.is_some() {
+                without(&|case| {
+                    frame(case, &|test| *test = test.without_axial());
+                    case.axes.pop();
+                });
+            }
             without(&|case| {
                 frame(case, &|test| {
                     test.members

@@ -110,17 +110,20 @@ impl World {
         witness.look_away(bench.rig());
     }
 
-    /// Someone moves the rig by hand to a position of each axis in its own coordinate \[m\]. An actuator that sticks stays, and its
-    /// controller with it.
+    /// Someone moves the rig by hand to a position of each lateral axis in its own coordinate \[m\]. An actuator that sticks stays, and
+    /// its controller with it.
     pub(super) fn move_by_hand(&self, to: &[f64]) {
         let mut state = self.lock();
         let State { bench, witness, .. } = &mut *state;
+        let axes: Vec<usize> = (0..to.len()).collect();
         let mut go = |to: &[f64]| {
             let rig = bench.rig_mut();
             let (speed, time) = (rig.settings().top_speed, rig.time());
-            rig.go_as(None, to, speed);
+            rig.go_those(None, &axes, to, speed);
             bench.advance(time + 1.0);
-            displacements(bench.rig_mut())
+            let rig = bench.rig_mut();
+            let reached = axes.iter().map(|axis| rig.displacement_of(*axis));
+            reached.collect::<Vec<f64>>()
         };
         let reached = go(to);
         if reached != to {
@@ -159,11 +162,17 @@ impl World {
         if !state.bench.rig().moving() {
             return true;
         }
-        let before = displacements(state.bench.rig_mut());
+        let before = (
+            displacements(state.bench.rig_mut()),
+            loads(state.bench.rig()),
+        );
         state.pass(LOOK);
-        let now = displacements(state.bench.rig_mut());
-        let mut axes = now.iter().zip(&before);
-        axes.all(|(now, before)| (now - before).abs() < 1e-9)
+        let now = (
+            displacements(state.bench.rig_mut()),
+            loads(state.bench.rig()),
+        );
+        let mut axes = now.0.iter().zip(&before.0);
+        axes.all(|(now, before)| (now - before).abs() < 1e-9) && now.1 == before.1
     }
 
     /// Seconds that the life has taken so far.
@@ -202,6 +211,7 @@ impl State {
         let moving = rig.moving() || now - self.moved <= READ_WITHIN;
         let before = Before {
             positions: commanded(rig).into_iter().zip(displacements(rig)).collect(),
+            forces: commanded_forces(rig),
             moving,
         };
         act(&mut self.bench);
@@ -243,10 +253,29 @@ impl State {
     }
 }
 
+/// The commanded position of each lateral axis \[m\].
+pub(super) fn lateral_positions(rig: &EmulatedRig) -> Vec<f64> {
+    let axes = (0..rig.actuators()).filter(|axis| !rig.is_axial(*axis));
+    axes.map(|axis| rig.commanded_of(axis)).collect()
+}
+
 /// The commanded position of each axis \[m\].
-pub(super) fn commanded(rig: &EmulatedRig) -> Vec<f64> {
+fn commanded(rig: &EmulatedRig) -> Vec<f64> {
     let axes = 0..rig.actuators();
     axes.map(|axis| rig.commanded_of(axis)).collect()
+}
+
+/// The force that each axis is commanded to hold \[N\]. None: it holds a displacement.
+pub(super) fn commanded_forces(rig: &EmulatedRig) -> Vec<Option<f64>> {
+    let axes = 0..rig.actuators();
+    axes.map(|axis| rig.force_control(axis).map(|control| control.target))
+        .collect()
+}
+
+/// The true force of each axial axis \[N\].
+fn loads(rig: &EmulatedRig) -> Vec<Option<f64>> {
+    let axes = 0..rig.actuators();
+    axes.map(|axis| rig.axial_force(axis)).collect()
 }
 
 /// The true position of each axis \[m\].
