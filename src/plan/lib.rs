@@ -169,6 +169,23 @@ impl Plan {
     pub fn axes_on_the_rig(&self) -> usize {
         self.degrees_of_freedom() + self.rig.axial_axes(&self.limits).count()
     }
+
+    /// The limits of the run. Axes may have their own: displacement and force are then the widest ones of an axis that moves a floor.
+    #[must_use]
+    pub fn lateral_limits(&self) -> Limits {
+        let axes = 0..self.degrees_of_freedom();
+        let of_axes = axes.map(|axis| self.rig.limits_of(axis, &self.limits));
+        let widest = |a: Interval, b: Interval| Interval {
+            low: a.low.min(b.low),
+            high: a.high.max(b.high),
+        };
+        let all = of_axes.reduce(|all, axis| Limits {
+            displacement: widest(all.displacement, axis.displacement),
+            force: widest(all.force, axis.force),
+            ..all
+        });
+        all.unwrap_or(self.limits)
+    }
 }
 
 /// A file of the plan, as it was read.

@@ -48,7 +48,7 @@ impl Motion {
             position: None,
             does,
             expected: Extent::default(),
-            limits: plan.limits,
+            limits: plan.lateral_limits(),
             at_scale: plan.specimens_at_scale(),
         }
     }

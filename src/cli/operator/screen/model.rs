@@ -129,7 +129,7 @@ impl Model {
             title: plan.title.clone(),
             rig: plan.rig.name.clone(),
             simulated,
-            limits: plan.limits,
+            limits: plan.lateral_limits(),
             shown: Shown::of(plan),
             procedure: None,
             last: None,
@@ -376,6 +376,7 @@ impl Model {
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use psd_plan::AxisPlan;
     use psd_testing::plans::empty_plan;
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
@@ -420,6 +421,20 @@ pub mod tests {
             "0.4 m/s of 1 m/s"
         );
         assert!((rows[2].margin().unwrap() - 0.005).abs() < 1e-12);
+        // An axis with a narrower limit of its own.
+        let force = Interval {
+            low: -20.0,
+            high: 10.0,
+        };
+        plan.limits.force = Interval {
+            low: -300.0,
+            high: 300.0,
+        };
+        plan.rig.simulated_axes = vec![AxisPlan {
+            force: Some(force),
+            ..AxisPlan::default()
+        }];
+        assert_eq!(Model::new(&plan, true).limits.force, force);
         // On the way back the low end is approached.
         model.step_done(&step(3, 0.3, 0.024, 5.0));
         assert!((model.limit_rows()[0].margin().unwrap() - 0.033_998).abs() < 1e-12);
