@@ -241,6 +241,12 @@ impl Cutter<'_> {
         let Some(last) = end.checked_sub(1) else {
             return false;
         };
+        // `intensity = speed in` goes on below; after a number `in` is the unit.
+        let is_word = |at: usize| self.tokens.kind(at) == Some(Kind::Word);
+        let is_stepped = self.tokens.is(last, "in") && is_word(last);
+        if is_stepped && last.checked_sub(1).is_some_and(is_word) {
+            return true;
+        }
         OPERATORS
             .iter()
             .chain(&JOINING_WORDS)

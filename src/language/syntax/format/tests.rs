@@ -36,6 +36,20 @@ fn a_long_row_pushes_no_comment_out_of_sight() {
     assert!(text.contains(&line), "{text}");
 }
 
+/// `in` is a unit after a number alone.
+#[test]
+fn a_list_below_in_belongs_to_its_line() {
+    let text = formatted(
+        "fragility f {\n  intensity = speed in\n  [1, 2] m/s\n  a = 3 in\n  b = hit.speed in\n 1 .. 2\n}\n",
+    );
+    assert!(
+        text.contains("intensity = speed in\n    [1, 2] m/s\n"),
+        "{text}"
+    );
+    assert!(text.contains("= 3 in\n"), "{text}");
+    assert!(text.contains("= hit.speed in\n    1 .. 2\n"), "{text}");
+}
+
 #[test]
 fn the_sample_plans_are_aligned_in_columns() {
     let text = formatted(IMPACT);
