@@ -26,6 +26,15 @@ impl Contribution {
         }
     }
 
+    /// One of each source that has an effect.
+    #[must_use]
+    pub fn of_each(parts: impl IntoIterator<Item = (Source, f64)>) -> Vec<Self> {
+        let parts = parts.into_iter().filter(|(_, amount)| *amount != 0.0);
+        parts
+            .map(|(source, amount)| Self::new(source, amount))
+            .collect()
+    }
+
     /// Its part of u²; 0 for the time step.
     #[must_use]
     pub fn variance(&self) -> f64 {

@@ -30,13 +30,7 @@ pub(super) fn unless_undecided(
 ) -> ConditionOutcome {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
-    let procedure = |reference: &ResultReference| {
-        Some((
-            record.procedures.get(reference.procedure.0)?,
-            reference.name,
-        ))
-    };
-    let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
+    let read = results_read(&references, record);
     let unfinished = || {
         let no_peak = || {
             unfinished_peaks::undecided(condition, rule, results, |procedure| {
@@ -46,10 +40,7 @@ pub(super) fn unless_undecided(
                     .map(|procedure| (&procedure.history, procedure.name.as_str()))
             })
         };
-        match cut_short(&read)
-            .or_else(|| unbalanced(&read))
-            .or_else(|| above_critical(&read))
-        {
+        match worthless(&read) {
             // A result that does not exist has its own reason.
             Some(why) => match &outcome.reason {
                 Some(missing) if outcome.margin.is_none() => Some(missing.clone()),
@@ -66,22 +57,31 @@ pub(super) fn unless_undecided(
 
 /// Why a number that is made of these results is not that of a finished motion; None if it is.
 pub fn unfinished(references: &[ResultReference], record: &Record) -> Option<String> {
+    let read = results_read(references, record);
+    let growing = || {
+        read.iter().find_map(|(procedure, result)| {
+            unfinished_peaks::growing(&procedure.history, result, &procedure.name)
+        })
+    };
+    worthless(&read).or_else(growing)
+}
+
+/// The results of procedures that took place.
+fn results_read<'a>(references: &[ResultReference], record: &'a Record) -> Vec<Read<'a>> {
     let procedure = |reference: &ResultReference| {
         Some((
             record.procedures.get(reference.procedure.0)?,
             reference.name,
         ))
     };
-    let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
-    let growing = || {
-        read.iter().find_map(|(procedure, result)| {
-            unfinished_peaks::growing(&procedure.history, result, &procedure.name)
-        })
-    };
-    cut_short(&read)
-        .or_else(|| unbalanced(&read))
-        .or_else(|| above_critical(&read))
-        .or_else(growing)
+    references.iter().filter_map(procedure).collect()
+}
+
+/// Why the motion of these results is not that of the specimen; None if it is.
+fn worthless(read: &[Read<'_>]) -> Option<String> {
+    cut_short(read)
+        .or_else(|| unbalanced(read))
+        .or_else(|| above_critical(read))
 }
 
 /// A procedure that is not complete: its peaks may not have been reached.

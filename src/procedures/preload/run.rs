@@ -48,19 +48,13 @@ fn results(plan: &Preload, whole: &Plan, at_the_end: Option<AxialReading>) -> Ve
     let position = axes.position(|(axis, _)| axis.storey == plan.storey);
     let axis = whole.degrees_of_freedom() + position.unwrap_or(0);
     let calibration = whole.rig.calibration_of(axis);
-    let some = |parts: &[(Source, f64)]| -> Vec<Contribution> {
-        let parts = parts.iter().filter(|(_, amount)| *amount != 0.0);
-        parts
-            .map(|(source, amount)| Contribution::new(*source, *amount))
-            .collect()
-    };
     let (force, displacement) = at_the_end
         .map(|reading| (reading.force, reading.displacement))
         .unzip();
     vec![
         schema::AXIAL_FORCE.found_by(
             force,
-            some(&[
+            Contribution::of_each([
                 (
                     Source::ForceScale(axis),
                     force.unwrap_or(0.0) * calibration.force_uncertainty,
@@ -70,7 +64,7 @@ fn results(plan: &Preload, whole: &Plan, at_the_end: Option<AxialReading>) -> Ve
         ),
         schema::AXIAL_DISPLACEMENT.found_by(
             displacement,
-            some(&[(
+            Contribution::of_each([(
                 Source::DisplacementScale(axis),
                 displacement.unwrap_or(0.0) * calibration.displacement_uncertainty,
             )]),

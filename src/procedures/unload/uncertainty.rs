@@ -164,8 +164,12 @@ impl UncertainRun<'_> {
         let floors = || 0..rest.force.len();
         let positions = |floor: usize| axes.positions_of(floor).into_iter().flat_map(of_position);
         let cells = |floor: usize| axes.forces_at(floor).into_iter().flat_map(of_cell);
-        let of_displacement = floors().map(|floor| some(positions(floor))).collect();
-        let of_force = floors().map(|floor| some(cells(floor))).collect();
+        let of_displacement = floors()
+            .map(|floor| Contribution::of_each(positions(floor)))
+            .collect();
+        let of_force = floors()
+            .map(|floor| Contribution::of_each(cells(floor)))
+            .collect();
         (rest.of_displacement, rest.of_force) = (of_displacement, of_force);
         rest.on_computed = floors().filter(|floor| !axes.is_measured(*floor)).collect();
     }
@@ -181,13 +185,6 @@ fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) 
     for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.moves(force)) {
         parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
     }
-}
-
-fn some(parts: impl Iterator<Item = (Source, f64)>) -> Vec<Contribution> {
-    parts
-        .filter(|(_, amount)| *amount != 0.0)
-        .map(|(source, amount)| Contribution::new(source, amount))
-        .collect()
 }
 
 /// The measured unloading stiffness: for each storey by eq. (6) over the last move that shows it, otherwise the expected one. An

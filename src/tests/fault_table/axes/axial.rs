@@ -275,11 +275,11 @@ fn the_load_is_held_while_the_host_is_away_and_when_it_comes_again() {
         "HELLO, CLR, LIM, FORCE"
     );
     assert_eq!(rig.read().unwrap().force[1], LOAD);
-    // A run that begins anew has no load yet: it does not begin.
-    let anew = crate::run::run(&plan, &mut rig, &mut Unwatched).outcome;
+    // A run that begins again has no load yet: it does not begin.
+    let again = crate::run::run(&plan, &mut rig, &mut Unwatched).outcome;
     assert!(
-        format!("{anew:?}").contains("force error of axis 2"),
-        "{anew:?}"
+        format!("{again:?}").contains("force error of axis 2"),
+        "{again:?}"
     );
     assert_eq!(held(&emulator), (Some(-LOAD), true, false));
 }

@@ -505,7 +505,7 @@ fn targets_of_an_axis_in_force_control_are_forces() {
     assert_eq!(
         device.last_move().unwrap().targets,
         [0.0, 26_250.0],
-        "HELLO told it before FORCE"
+        "HELLO stated it before FORCE"
     );
     let going = device.encode(&[0.005, 30_000.125_4], 1e-3).unwrap();
     assert_eq!(going.targets, [0.005, 30_000.125]);
