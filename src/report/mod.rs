@@ -12,7 +12,7 @@
 //! | a number in `summary.json` | `summary/mod.rs` (format), `summary/fill.rs` (values) |
 //! | digits, units and signs of numbers | `number/` |
 //! | the files of a run, and their order | `output/mod.rs` |
-//! | whether a report may be signed | `status/mod.rs` |
+//! | whether a report may be signed | `status/report_status.rs` |
 
 mod budget;
 pub mod console;

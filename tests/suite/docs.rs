@@ -119,6 +119,72 @@ fn paths_in_pages_and_comments_exist() {
     none(&absent, "a path that does not exist");
 }
 
+/// Cells of a row of a table in Markdown. A bar inside of code marks or after a backslash is text.
+fn cells(row: &str) -> usize {
+    let (mut bars, mut in_code, mut escaped) = (0, false, false);
+    for letter in row.trim().chars() {
+        match letter {
+            '`' if !escaped => in_code = !in_code,
+            '|' if !escaped && !in_code => bars += 1,
+            _ => {}
+        }
+        escaped = letter == '\\' && !escaped;
+    }
+    bars - 1
+}
+
+#[test]
+fn every_row_of_a_table_has_the_cells_of_its_head() {
+    let mut pages: Vec<String> = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"]
+        .map(str::to_owned)
+        .to_vec();
+    pages.extend(
+        crate::book::pages()
+            .iter()
+            .map(|path| format!("docs/{}", path.display())),
+    );
+    let mut rows = 0;
+    let mut wrong = Vec::new();
+    for name in &pages {
+        let mut head = None;
+        for (line, row) in (1..).zip(page(name).lines()) {
+            if !row.starts_with('|') {
+                head = None;
+                continue;
+            }
+            rows += 1;
+            if cells(row) != *head.get_or_insert_with(|| cells(row)) {
+                wrong.push(format!("{name}:{line}"));
+            }
+        }
+    }
+    assert!(rows > 500, "{rows}");
+    none(&wrong, "a row with other cells than its head");
+}
+
+#[test]
+fn terms_of_the_glossary_are_in_alphabetical_order() {
+    let glossary = page("docs/glossary.md");
+    let terms: Vec<String> = glossary
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .skip(1)
+        .filter_map(|line| line.split('|').nth(1))
+        .map(|term| {
+            let term = term.to_lowercase().replace('α', "alpha").replace('δ', "delta");
+            term.chars()
+                .filter(|letter| letter.is_ascii_lowercase() || *letter == ' ')
+                .collect::<String>()
+                .trim()
+                .to_owned()
+        })
+        .collect();
+    assert!(terms.len() > 80, "{}", terms.len());
+    for pair in terms.windows(2) {
+        assert!(pair[0] <= pair[1], "{} follows {}", pair[1], pair[0]);
+    }
+}
+
 #[test]
 fn the_readmes_commands_are_there() {
     let readme = page("README.md");

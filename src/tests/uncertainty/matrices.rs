@@ -142,7 +142,7 @@ fn the_lists_of_an_impact_series_are_as_uncertain_as_its_striker() {
     ];
     let lists = [
         ("velocities", 3),
-        ("blow_energies", 3),
+        ("impact_energies", 3),
         ("max_displacements", 3),
         ("absorbed_energies", 3),
         ("impulses", 3),

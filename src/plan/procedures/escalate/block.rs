@@ -137,7 +137,7 @@ pub const VELOCITIES: ResultKind = ResultKind::measured_list(
 .made_of(&impact::STRIKER_ENERGY);
 
 pub const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
-    "blow_energies",
+    "impact_energies",
     Dimension::ENERGY,
     "striker energy of each impact",
 )
