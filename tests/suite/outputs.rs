@@ -9,7 +9,7 @@ use std::io::Cursor;
 use std::sync::LazyLock;
 
 use fixture::{Finished, finished};
-use polars::prelude::{ParquetReader, SerReader as _};
+use polars_io::prelude::{ParquetReader, SerReader as _};
 use psd::report::summary::Summary;
 use psd::report::{OutputFile, console, manifest_with, put_everything};
 use psd::verdict::{Bound, Verdict};

@@ -5,9 +5,8 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use polars::prelude::{
-    Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PlSmallStr, SerWriter as _,
-};
+use polars::prelude::{Column, DataFrame, PlSmallStr};
+use polars_io::prelude::{CsvWriter, ParquetCompression, ParquetWriter, SerWriter as _};
 
 /// Rows of a chunk; in Parquet, a row group.
 const CHUNK: usize = 65_536;

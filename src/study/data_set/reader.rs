@@ -6,7 +6,7 @@ use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use polars::prelude::{
+use polars_io::prelude::{
     FileMetadata, FileMetadataRef, ParallelStrategy, ParquetReader, SerReader as _,
 };
 use sha2::{Digest as _, Sha256};

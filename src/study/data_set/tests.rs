@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{
-    Column as FrameColumn, DataFrame, ParquetReader, ParquetWriter, SerReader as _,
-};
+use polars::prelude::{Column as FrameColumn, DataFrame};
+use polars_io::prelude::{ParquetReader, ParquetWriter, SerReader as _};
 use tempfile::TempDir;
 
 use super::testing::{metadata, row};

@@ -7,7 +7,8 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{CompatLevel, KeyValueMetadata, PolarsError, SchemaExt as _};
+use polars::prelude::{CompatLevel, PolarsError, SchemaExt as _};
+use polars_io::prelude::KeyValueMetadata;
 use polars_parquet::read::ParquetError;
 use polars_parquet::write::{
     CompressionOptions, Compressor, DynIter, DynStreamingIterator, Encoding,
