@@ -10,6 +10,7 @@ use psd_plan::Plan;
 use psd_plan::formula::{ResultPart, ResultReference};
 use psd_plan::record::Record;
 use psd_rig::virtual_rig;
+use psd_text::count::counted;
 
 /// The impact that is the whole plan, if it can run in a batch.
 pub fn impact(plan: &Plan) -> Option<BatchedImpact> {
@@ -106,12 +107,12 @@ impl LeftBatches {
         ]
         .map(|(counter, why)| (counter.load(Ordering::Relaxed), why));
         let all: u64 = counts.iter().map(|(count, _)| count).sum();
-        let runs = if all == 1 { "run" } else { "runs" };
+        let runs = counted(all, "run", "runs");
         let reasons: Vec<String> = counts
             .into_iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, why)| format!("{count} {why}"))
             .collect();
-        (all > 0).then(|| format!("{all} {runs} left the batches: {}", reasons.join(", ")))
+        (all > 0).then(|| format!("{runs} left the batches: {}", reasons.join(", ")))
     }
 }

@@ -12,6 +12,7 @@ use crate::output::print_message;
 use psd::run::{Observer, StepReport};
 use psd_plan::record::IS_OUTSIDE;
 use psd_plan::record::{Event, EventKind};
+use psd_text::count::counted;
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
@@ -168,7 +169,7 @@ impl Lines {
     fn line(&self, name: &str) -> String {
         let mut text = format!("  {}: {}", escape(name), self.keyword);
         if let Some(step) = self.last {
-            let steps = if step == 1 { "step" } else { "steps" };
+            let steps = counted(step, "step", "steps");
             let (displacement, force) = self.largest;
             let (displacement, force) = (
                 readable(displacement, Dimension::LENGTH),
@@ -176,7 +177,7 @@ impl Lines {
             );
             let _ = write!(
                 text,
-                ", {step} {steps}, largest X {displacement}, largest R {force}{}",
+                ", {steps}, largest X {displacement}, largest R {force}{}",
                 self.shown.of_rig
             );
         }

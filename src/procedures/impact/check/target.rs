@@ -16,6 +16,7 @@ use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames;
 use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
+use psd_text::count::counted_in_words;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -137,11 +138,7 @@ impl Violation for NoSuchStorey<'_> {
             at,
             declared,
         } = self;
-        let has = if storeys == 1 {
-            "one storey".to_owned()
-        } else {
-            format!("{storeys} storeys")
-        };
+        let has = counted_in_words(storeys, "storey", "storeys");
         Diagnostic::new(
             Self::CODE,
             format!(
