@@ -383,8 +383,10 @@ impl Rig for RecordedRig<'_> {
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
         if self.answers_from_the_log() {
-            // A target is compared with the run log here, if a client's requests came first.
-            self.logged_intent(&targets, speed, None)?;
+            // A target is compared with the run log here, if a client's requests came first; else it was when it was proposed.
+            if self.state.borrow().driven {
+                self.logged_intent(&targets, speed, None)?;
+            }
             let mut state = self.state.borrow_mut();
             state.consume();
             if let Some(fault) = state.logged_fault(Call::Execute) {
