@@ -120,6 +120,8 @@ pub struct Lines {
     printed: Option<Instant>,
     /// The time left of the run, if it is known.
     pub left: Option<Duration>,
+    /// The end of the last step.
+    pub now: Option<Instant>,
     /// Number of the last step.
     last: Option<u64>,
     /// Largest |X| \[m\] and |R| \[N\] of the steps.
@@ -215,9 +217,10 @@ impl Observer for Lines {
                 self.largest.1.max(axis.force.abs()),
             );
         }
-        let due = self.printed.is_some_and(|at| at.elapsed() >= BETWEEN_LINES);
+        let since = self.now.zip(self.printed);
+        let due = since.is_some_and(|(now, at)| now.duration_since(at) >= BETWEEN_LINES);
         if due && !self.silent {
-            self.printed = Some(Instant::now());
+            self.printed = self.now;
             print_message(&self.progress(report));
         }
     }
