@@ -26,7 +26,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use common::calibrated_range;
 use common::fit_uncertainty::Fits;
-use facts::{Delay, Facts, Leaves, Left, Recorded, Tests};
+use facts::{Delay, Facts, Leaves, Left, Listed, Recorded, Tests};
 use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
@@ -167,15 +167,28 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
         ProcedureKind::Unload(unload) => unload::facts::facts(unload),
         ProcedureKind::Escalate(series) => escalate::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
-        ProcedureKind::Preload(_) => Facts {
+        ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => Facts {
             tests: Tests::Nothing,
+            ..Facts::default()
+        },
+    }
+}
+
+/// Report: the results of a procedure of the plan, as a report lists them.
+pub(crate) fn listed(kind: &ProcedureKind) -> Listed {
+    match kind {
+        ProcedureKind::StiffnessRamp(_) => stiffness_ramp::facts::listed(),
+        ProcedureKind::DampingSweep(_) => damping_sweep::facts::listed(),
+        ProcedureKind::Impact(impact) => impact::facts::listed(impact),
+        ProcedureKind::Shake(_) => shake::facts::listed(),
+        ProcedureKind::Cycle(_) => cycle::facts::listed(),
+        ProcedureKind::Unload(unload) => unload::facts::listed(unload),
+        ProcedureKind::Escalate(_) => escalate::facts::listed(),
+        ProcedureKind::Preload(_) => Listed {
             headline: vec![AXIAL_FORCE.name],
-            ..Facts::default()
+            ..Listed::default()
         },
-        ProcedureKind::Inspect { .. } => Facts {
-            tests: Tests::Nothing,
-            ..Facts::default()
-        },
+        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Listed::default(),
     }
 }
 

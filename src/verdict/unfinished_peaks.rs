@@ -2,6 +2,8 @@
 //! series, and a condition that reads their results. Out: the reason why the condition is inconclusive, if further growth would change
 //! its verdict. It assesses no condition alone, and does not read the plan.
 
+use std::borrow::Cow;
+
 use super::ConditionOutcome;
 use super::assess_condition;
 use psd_plan::formula::{
@@ -141,7 +143,7 @@ impl Results for Grown<'_> {
         Some(found)
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         self.results.contributions(reference)
     }
 

@@ -11,6 +11,8 @@ mod identity;
 pub mod remote;
 mod zero_drift;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
@@ -220,21 +222,19 @@ impl NamedResult {
 
     /// The uncertainty contributions of the result of this `reference`.
     #[must_use]
-    pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
+    pub fn contributions_of(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         match self.value {
             ResultValue::Number {
                 uncertainty: Some(own),
                 ..
             } if self.contributions.is_empty() => {
-                vec![Contribution::new(
-                    Source::Fit {
-                        procedure: reference.procedure,
-                        result: self.name,
-                    },
-                    own,
-                )]
+                let result = Source::Fit {
+                    procedure: reference.procedure,
+                    result: self.name,
+                };
+                vec![Contribution::new(result, own)].into()
             }
-            _ => self.contributions.clone(),
+            _ => Cow::Borrowed(&self.contributions),
         }
     }
 }
@@ -299,12 +299,12 @@ impl Results for Record {
         Some(found.value.clone())
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         let found = self
             .procedures
             .get(reference.procedure.0)
             .and_then(|procedure| procedure.result(reference.name));
-        found.map_or_else(Vec::new, |found| found.contributions_of(reference))
+        found.map_or_else(Cow::default, |found| found.contributions_of(reference))
     }
 
     fn degrees(&self, source: Source) -> f64 {

@@ -1,7 +1,7 @@
 //! The facts about an unloading that the drivers of check and report need without carrying it out. In: an unloading of the plan.
 //! Out: facts.
 
-use crate::procedures::facts::{Facts, Leaves, Recorded, Tests};
+use crate::procedures::facts::{Facts, Leaves, Listed, Recorded, Tests};
 use crate::procedures::shake::figures;
 use crate::procedures::shake::figures::charts::{entries_of, members_of};
 use psd_plan::procedures::unload::block as schema;
@@ -10,7 +10,6 @@ use psd_plan::{Specimen, Unload};
 pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     let shared = Facts {
         unloads: true,
-        headline: vec![schema::RESIDUAL_DISPLACEMENT.name],
         ..Facts::default()
     };
     if unload.stiffness.is_some() {
@@ -19,8 +18,18 @@ pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     Facts {
         tests: Tests::Frame,
         figures: figures::UNLOADING_FIGURES,
-        headline: vec![schema::RESIDUAL_DRIFT.name],
         ..shared
+    }
+}
+
+pub(crate) fn listed(unload: &Unload) -> Listed {
+    let headline = match unload.stiffness {
+        Some(_) => schema::RESIDUAL_DISPLACEMENT,
+        None => schema::RESIDUAL_DRIFT,
+    };
+    Listed {
+        headline: vec![headline.name],
+        ..Listed::default()
     }
 }
 
