@@ -19,8 +19,8 @@ pub use columns::Column;
 pub use functions::{CONSTANTS, FUNCTIONS, FunctionKind, Takes, constant};
 pub use synonyms::SYNONYMS;
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
-    Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Peak, Possible, Presence, Range, ResultKind,
+    RigKind, Variant,
 };
 
 use psd_text::units::{Dimension, display};
@@ -153,6 +153,27 @@ mod tests {
                     field.name
                 );
             }
+        }
+    }
+
+    /// A largest value is a peak only if the motion went on past it; the verdict asks each result.
+    #[test]
+    fn a_largest_value_of_a_motion_states_after_which_peak_it_is_final() {
+        use crate::procedures::{escalate, impact, shake};
+        use procedures::tracking;
+        let of_the_actuator = [tracking::PEAK_ERROR, tracking::TRACKING_ENERGY_ERROR];
+        let motions = [
+            impact::block::RESULTS,
+            shake::block::RESULTS,
+            escalate::block::RESULTS,
+        ];
+        for result in motions.into_iter().flatten() {
+            let mut words = result.doc.split(|letter: char| !letter.is_alphanumeric());
+            let largest = words.any(|word| ["largest", "peak"].contains(&word));
+            let exempt = of_the_actuator.iter().any(|kind| kind.name == result.name);
+            let of_impact = result.made_of.and_then(|kind| kind.peak);
+            let stated = result.peak.or(of_impact).is_some();
+            assert!(stated || exempt || !largest, "{}", result.name);
         }
     }
 

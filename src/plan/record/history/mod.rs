@@ -3,7 +3,6 @@
 
 pub mod floors;
 
-use crate::procedures::stiffness_ramp::block as stiffness_ramp;
 use crate::record::{
     CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, MoveStep, ShakeHistory,
     StiffnessRampHistory, UnloadStep,
@@ -29,24 +28,6 @@ pub enum History {
     Preload,
     Inspect,
 }
-
-/// Results of a ramp that are fitted to the relaxation of all its moves and dwells together.
-const OF_SUPERPOSITION: [&str; 6] = [
-    stiffness_ramp::TIME_CONSTANT.name,
-    stiffness_ramp::REMAINING_RELAXATION.name,
-    stiffness_ramp::REQUIRED_PAUSE.name,
-    stiffness_ramp::RELAXATION_SHARE.name,
-    stiffness_ramp::REFERENCE_TIME.name,
-    stiffness_ramp::RELAXATION_RATE.name,
-];
-
-/// Results of a ramp that are fitted to its relaxation with all of its degrees of freedom.
-const OF_RELAXATION: [&str; 4] = [
-    stiffness_ramp::TIME_CONSTANT.name,
-    stiffness_ramp::BRANCH_STIFFNESS.name,
-    stiffness_ramp::REMAINING_RELAXATION.name,
-    stiffness_ramp::REQUIRED_PAUSE.name,
-];
 
 impl History {
     /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
@@ -80,24 +61,18 @@ impl History {
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
         match self {
-            Self::StiffnessRamp(StiffnessRampHistory {
-                reached: Some(fit), ..
-            }) if OF_SUPERPOSITION.contains(&result) => Some(fit.best().degrees),
-            Self::StiffnessRamp(ramp) => match (result, ramp.relaxation.as_deref()) {
-                (_, Some(fit)) if result == stiffness_ramp::RELAXED_STIFFNESS.name => {
-                    Some(fit.degrees_of_stiffness())
-                }
-                (_, Some(fit)) if OF_RELAXATION.contains(&result) => Some(fit.degrees),
-                _ => {
-                    let line = ramp.fit.map(|fit| fit.degrees);
-                    let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
-                    line.or_else(bilinear)
-                        .or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
-                }
-            },
+            Self::StiffnessRamp(ramp) => ramp.degrees(result),
             Self::DampingSweep(sweep) => sweep.fit.map(|fit| fit.degrees),
             Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
-            _ => None,
+            Self::Impact(_)
+            | Self::Shake(_)
+            | Self::Escalate(_)
+            | Self::Move(_)
+            | Self::Unload(_)
+            | Self::FrameUnload(_)
+            | Self::ElementUnload(_)
+            | Self::Preload
+            | Self::Inspect => None,
         }
     }
 }
