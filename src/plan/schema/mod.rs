@@ -79,12 +79,21 @@ pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
 
 /// The entry of a kind of block.
 #[must_use]
-pub fn block(kind: Kind) -> &'static BlockKind {
-    BLOCKS
-        .iter()
-        .copied()
-        .find(|block| block.kind == kind)
-        .unwrap_or(&blocks::plan_block::PLAN)
+pub const fn block(kind: Kind) -> &'static BlockKind {
+    match kind {
+        Kind::Plan => &blocks::plan_block::PLAN,
+        Kind::Specimen => &blocks::specimen::SPECIMEN,
+        Kind::Striker => &blocks::striker::STRIKER,
+        Kind::Ground => &blocks::ground::GROUND,
+        Kind::Limits => &blocks::limits::LIMITS,
+        Kind::Rig => &blocks::rig::RIG,
+        Kind::Reproduces => &blocks::evaluation::reproduces::REPRODUCES,
+        Kind::Report => &blocks::evaluation::report::REPORT,
+        Kind::Golden => &blocks::evaluation::golden::GOLDEN,
+        Kind::Study => &blocks::evaluation::study::STUDY,
+        Kind::Fragility => &blocks::evaluation::study::FRAGILITY,
+        Kind::Procedure(procedure) => procedures::block(procedure),
+    }
 }
 
 /// Whether a result is a fraction that is printed in percent. The name of its procedure and an index may be part of the name.
@@ -131,6 +140,13 @@ mod tests {
             Some(Kind::Procedure(ProcedureBlock::Inspect))
         );
         assert!(block_of_words(&["stiffness", "k0"]).is_none());
+    }
+
+    #[test]
+    fn a_block_is_listed_under_its_own_kind() {
+        for listed in BLOCKS {
+            assert_eq!(block(listed.kind).keyword, listed.keyword);
+        }
     }
 
     #[test]

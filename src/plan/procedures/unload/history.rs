@@ -1,6 +1,6 @@
 //! The history of an unloading: the floors after every move; one degree of freedom is one floor. In: numbers of a run, SI. It moves nothing.
 
-use crate::record::history::floors::{Floors, FloorsAt, drift_of, shear_of};
+use crate::record::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 use psd_physics::structure::elements::ElementReading;
 
