@@ -6,6 +6,7 @@ pub mod cycle;
 pub mod damping_sweep;
 pub mod escalate;
 pub(crate) mod facts;
+pub(crate) mod frame;
 pub mod impact;
 pub mod inspect;
 pub mod move_to;
@@ -26,6 +27,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use common::calibrated_range;
 use common::fit_uncertainty::Fits;
+use common::predicted::Predicted;
 use facts::{Delay, Facts, Leaves, Left, Recorded, Tests};
 use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
@@ -340,6 +342,42 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
         | ProcedureKind::Move(_)
         | ProcedureKind::Preload(_)
         | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
+/// Command line: what `psd check --explain` prints of a procedure from a dry run, besides its motion. `by_tracking`: rows for the energy
+/// that tracking errors add to it or remove.
+pub fn predicted(
+    plan: &Plan,
+    kind: &ProcedureKind,
+    procedure: &ProcedureRecord,
+    by_tracking: &[Vec<String>],
+) -> Vec<Predicted> {
+    match (kind, &procedure.history) {
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::predicted::predicted(plan, impact, procedure, history, by_tracking)
+        }
+        (ProcedureKind::Shake(shake), History::Shake(history)) => {
+            shake::predicted::predicted(plan, shake, &procedure.name, history, by_tracking)
+        }
+        (_, History::Escalate(_)) => vec![Predicted::new(
+            format!("{}, worst impact", procedure.name),
+            by_tracking.to_vec(),
+        )],
+        (
+            _,
+            History::Impact(_)
+            | History::Shake(_)
+            | History::StiffnessRamp(_)
+            | History::DampingSweep(_)
+            | History::Cycle(_)
+            | History::Move(_)
+            | History::Unload(_)
+            | History::FrameUnload(_)
+            | History::ElementUnload(_)
+            | History::Preload
+            | History::Inspect,
+        ) => Vec::new(),
     }
 }
 
