@@ -206,11 +206,8 @@ pub(crate) fn recorded(history: &History) -> Recorded {
         History::Shake(history) => shake::facts::recorded(history),
         History::Cycle(_) => cycle::facts::recorded(),
         History::Escalate(_) => escalate::facts::recorded(),
-        History::FrameUnload(_) => unload::facts::recorded_frame(),
-        History::ElementUnload(_) => unload::facts::recorded_elements(),
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {
-            Recorded::default()
-        }
+        History::Unload(history) => unload::facts::recorded(history.of),
+        History::Move(_) | History::Preload | History::Inspect => Recorded::default(),
     }
 }
 
@@ -276,8 +273,6 @@ pub(crate) fn attribute(
         | History::Escalate(_)
         | History::Move(_)
         | History::Unload(_)
-        | History::FrameUnload(_)
-        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => return,
     }
@@ -373,8 +368,6 @@ pub fn predicted(
             | History::Cycle(_)
             | History::Move(_)
             | History::Unload(_)
-            | History::FrameUnload(_)
-            | History::ElementUnload(_)
             | History::Preload
             | History::Inspect,
         ) => Vec::new(),
@@ -395,9 +388,8 @@ pub(crate) fn chart(
         History::Shake(history) => shake::figures::chart(run, name, history, figure),
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
         History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
-        History::FrameUnload(steps) => shake::figures::unloading_chart(run, name, steps, kind),
-        History::ElementUnload(steps) => shake::figures::unloaded_elements(run, name, steps, kind),
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => None,
+        History::Unload(history) => unload::figures::chart(run, name, history, kind),
+        History::Move(_) | History::Preload | History::Inspect => None,
     }
 }
 
@@ -412,8 +404,6 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
         | History::Escalate(_)
         | History::Move(_)
         | History::Unload(_)
-        | History::FrameUnload(_)
-        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => None,
     }
@@ -443,9 +433,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => escalate::tables::tables(name, history, scaled.as_ref()),
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
-        History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
-        History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
-        History::ElementUnload(steps) => vec![unload::tables::of_elements(name, steps, scaled)],
+        History::Unload(history) => vec![unload::tables::table(name, history, scaled)],
         History::Preload | History::Inspect => Vec::new(),
     };
     tables.extend(preload::tables::table(&procedure.name, &procedure.axial));
@@ -498,13 +486,8 @@ pub(crate) fn report(
         History::Escalate(history) => {
             escalate::report::table(run, index, procedure, history, body);
         }
-        History::FrameUnload(steps) => {
-            shake::report::unloaded(run, index, procedure, steps, body);
-        }
-        History::ElementUnload(steps) => {
-            shake::report::unloaded_elements(run, procedure, steps, body);
-        }
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {}
+        History::Unload(history) => unload::report::report(run, index, procedure, history, body),
+        History::Move(_) | History::Preload | History::Inspect => {}
     }
 }
 
@@ -553,14 +536,7 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
         History::Shake(shake) => {
             common::reached::of_floors(shake.steps.iter().map(|step| &step.floors), give);
         }
-        History::Unload(steps) | History::FrameUnload(steps) => {
-            let steps = steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
-        }
-        History::ElementUnload(steps) => {
-            let steps = steps.iter();
-            steps.for_each(|step| give(&[], &[], &step.elements()));
-        }
+        History::Unload(history) => common::reached::of_unloading(history, give),
         History::Preload | History::Inspect => {}
     }
 }

@@ -59,8 +59,6 @@ fn growth(history: &History, result: &str, name: &str) -> Option<Growth> {
         | History::Cycle(_)
         | History::Move(_)
         | History::Unload(_)
-        | History::FrameUnload(_)
-        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => None,
     }

@@ -56,7 +56,7 @@ pub mod unload {
 
 use histories::{
     CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, MoveStep, ShakeHistory,
-    StiffnessRampHistory, UnloadStep,
+    StiffnessRampHistory, UnloadHistory,
 };
 use parameters::{
     Cycle, DampingSweep, Escalate, Impact, Move, Preload, Shake, StiffnessRamp, Unload,
@@ -98,7 +98,7 @@ pub mod histories {
     pub use crate::procedures::preload::history::AxialReading;
     pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
     pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
-    pub use crate::procedures::unload::history::{Rest, UnloadStep};
+    pub use crate::procedures::unload::history::{Rest, UnloadHistory, UnloadStep, Unloaded};
 }
 
 /// The blocks of the procedures: a plan writes each by its keyword.
@@ -212,12 +212,7 @@ pub enum History {
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
     Move(Vec<MoveStep>),
-    /// The moves that unload one degree of freedom.
-    Unload(Vec<UnloadStep>),
-    /// The floors of a frame during the unloading.
-    FrameUnload(Vec<UnloadStep>),
-    /// Of the elements of a frame of matrices.
-    ElementUnload(Vec<UnloadStep>),
+    Unload(UnloadHistory),
     /// Its readings are those of the axial axes.
     Preload,
     Inspect,
@@ -242,8 +237,6 @@ impl History {
             | Self::Cycle(_)
             | Self::Move(_)
             | Self::Unload(_)
-            | Self::FrameUnload(_)
-            | Self::ElementUnload(_)
             | Self::Preload
             | Self::Inspect => Vec::new(),
         };
@@ -263,8 +256,6 @@ impl History {
             | Self::Escalate(_)
             | Self::Move(_)
             | Self::Unload(_)
-            | Self::FrameUnload(_)
-            | Self::ElementUnload(_)
             | Self::Preload
             | Self::Inspect => None,
         }

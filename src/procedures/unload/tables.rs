@@ -4,7 +4,7 @@ use crate::procedures::shake;
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
 use psd_physics::structure::substructures::Assemblies;
-use psd_plan::record::UnloadStep;
+use psd_plan::record::{UnloadHistory, UnloadStep, Unloaded};
 use psd_plan::schema::{Column, columns};
 
 /// The columns of the moves of one degree of freedom.
@@ -60,18 +60,21 @@ pub(crate) fn columns() -> Vec<Column> {
     [numeric(MOVES), of_floors, numeric(&elements(true))].concat()
 }
 
-/// The table of the elements of a frame of matrices, under this name.
-pub(crate) fn of_elements(
+/// The table of an unloading, under this name.
+pub(crate) fn table(
     name: String,
-    steps: &[UnloadStep],
+    history: &UnloadHistory,
     scaled: Option<Assemblies>,
 ) -> Table<'_> {
-    Table::of(name, steps, move |steps| {
-        elements_written(steps, scaled.as_ref())
+    let of = history.of;
+    Table::of(name, &history.steps, move |steps| match of {
+        Unloaded::OneAxis => written(MOVES, steps),
+        Unloaded::Floors => shake::tables::unloading(steps, scaled.as_ref()),
+        Unloaded::Elements => elements_written(steps, scaled.as_ref()),
     })
 }
 
-/// The columns of that table; step 0 is the start of the unloading.
+/// The table of the elements of a frame of matrices; step 0 is the start of the unloading.
 pub(crate) fn elements_written(
     steps: &[UnloadStep],
     scaled: Option<&Assemblies>,
@@ -95,20 +98,4 @@ pub(crate) fn elements_written(
         on_the_rig.into_iter().enumerate().map(row)
     });
     written(&elements(scaled.is_some()), &rows.collect::<Vec<_>>())
-}
-
-/// The table of the moves of one degree of freedom, under this name.
-pub(crate) fn of_moves(name: String, steps: &[UnloadStep]) -> Table<'_> {
-    Table::of(name, steps, |steps| written(MOVES, steps))
-}
-
-/// The table of the floors of a frame, under this name.
-pub(crate) fn of_floors(
-    name: String,
-    steps: &[UnloadStep],
-    scaled: Option<Assemblies>,
-) -> Table<'_> {
-    Table::of(name, steps, move |steps| {
-        shake::tables::unloading(steps, scaled.as_ref())
-    })
 }

@@ -55,6 +55,24 @@ impl Floors for UnloadStep {
     }
 }
 
+/// The moves of an unloading.
+#[derive(Clone, Debug)]
+pub struct UnloadHistory {
+    pub of: Unloaded,
+    pub steps: Vec<UnloadStep>,
+}
+
+/// The part of a specimen that an unloading moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unloaded {
+    /// One degree of freedom. The start is not among the steps.
+    OneAxis,
+    /// All floors of a frame.
+    Floors,
+    /// All elements of a frame of matrices.
+    Elements,
+}
+
 /// The rest position of a specimen, floor by floor or element by element; one degree of freedom is one floor.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rest {

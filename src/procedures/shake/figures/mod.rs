@@ -1,5 +1,5 @@
-//! The figures of a ground-motion test and of an unloaded frame, with their captions, and the curve of a test on a chart of several. In:
-//! a history. Out: [`Chart`]s in SI.
+//! The figures of a ground-motion test, with their captions, and the curve of a test on a chart of several. In: a history. Out: [`Chart`]s
+//! in SI.
 
 pub(crate) mod charts;
 
@@ -9,7 +9,7 @@ use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
 use crate::report::wording::specimen::{measured, weights};
 use psd_plan::procedures::shake::block as schema;
-use psd_plan::record::{Floors, ShakeHistory, ShakeStep, UnloadStep};
+use psd_plan::record::{Floors, ShakeHistory, ShakeStep};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
@@ -25,9 +25,6 @@ pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Energy,
     FigureKind::Tracking,
 ];
-
-/// Figures of a frame that is unloaded.
-pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
 
 /// Figures that several ground-motion tests share: one curve for each.
 pub(crate) const SHARED: &[FigureKind] = &[
@@ -87,48 +84,6 @@ pub(crate) fn chart(
             followed(run, name, chosen),
         ),
         _ => return None,
-    })
-}
-
-/// The unloading path of a frame to zero restoring force, and its caption.
-pub(crate) fn unloading_chart(
-    run: &Run<'_>,
-    name: &str,
-    steps: &[UnloadStep],
-    kind: FigureKind,
-) -> Option<(Chart, String)> {
-    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
-        (
-            charts::hysteresis(steps),
-            format!(
-                "{name}: {} against drift, from the start of the unloading to the unloaded position of each storey.",
-                storey_shear(run)
-            ),
-        )
-    })
-}
-
-/// The same of the elements of a frame of matrices.
-pub(crate) fn unloaded_elements(
-    run: &Run<'_>,
-    name: &str,
-    steps: &[UnloadStep],
-    kind: FigureKind,
-) -> Option<(Chart, String)> {
-    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
-        let force = measured("force of each element", run.plan.frame_on_the_rig());
-        let read = |step: &UnloadStep| {
-            let deformation = step.displacement.iter().copied();
-            deformation
-                .zip(step.restoring_force.iter().copied())
-                .collect()
-        };
-        (
-            charts::loops(steps, true, read),
-            format!(
-                "{name}: {force} against its deformation, from the start of the unloading to zero force."
-            ),
-        )
     })
 }
 

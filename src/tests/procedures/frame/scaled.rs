@@ -334,7 +334,7 @@ fn a_table_has_the_numbers_of_the_rig_beside_those_of_the_prototype() {
         let frame = plan.frame_on_the_rig().unwrap();
         let scaled = Assemblies::of(frame).filter(Assemblies::is_scaled);
         match &record.procedures[1].history {
-            History::FrameUnload(steps) => tables::unloading(steps, scaled.as_ref()),
+            History::Unload(history) => tables::unloading(&history.steps, scaled.as_ref()),
             other => panic!("{other:?}"),
         }
     };
