@@ -42,7 +42,7 @@ pub(crate) fn with_numbers(contact: &Contact, inputs: &mut Inputs<'_>) -> Result
     let mut numbers = Vec::new();
     for number in contact.numbers() {
         let field = schema::contact_number(contact.name(), number.argument);
-        let value = inputs.in_range(number.input, number.value, field)?;
+        let value = inputs.named(number.input, number.value, field)?;
         numbers.push((number.argument, value));
     }
     let law = ContactLaw::of_numbers(contact.name(), |argument| {

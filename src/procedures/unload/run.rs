@@ -162,15 +162,13 @@ fn unload(
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
     let unloading = match &plan.stiffness {
-        Some(stiffness) => {
-            Unloading::of_one(inputs.positive(STIFFNESS.name, stiffness, Dimension::STIFFNESS)?)
-        }
+        Some(stiffness) => Unloading::of_one(inputs.number(&STIFFNESS, stiffness)?),
         None => of_frame(frame_of(whole, plan.specimen)?)?,
     };
     let within = plan
         .within
         .as_ref()
-        .map(|within| inputs.positive(schema::WITHIN.name, within, Dimension::FORCE))
+        .map(|within| inputs.number(&schema::WITHIN, within))
         .transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
