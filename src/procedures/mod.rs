@@ -425,7 +425,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         }
         History::Shake(history) => {
             let number = |step: usize| history.steps[step].step;
-            let of_elements = shake::tables::of_elements(&name, &history.steps, number, assemblies);
+            let of_elements = frame::tables::of_elements(&name, &history.steps, number, assemblies);
             once(shake::tables::table(name, history, scaled))
                 .chain(of_elements)
                 .collect()
@@ -453,8 +453,8 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
         ProcedureBlock::Shake => {
-            let of_floors = shake::tables::columns(shake::tables::shake());
-            [of_floors, numeric(&shake::tables::elements())].concat()
+            let of_floors = frame::tables::columns(shake::tables::shake());
+            [of_floors, numeric(&frame::tables::elements())].concat()
         }
         ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Preload => preload::tables::columns(),

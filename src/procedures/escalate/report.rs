@@ -1,6 +1,6 @@
 //! The impacts of a series, one row each, and the storeys of a frame. In: plan and history. Out: blocks.
 
-use crate::procedures::shake;
+use crate::procedures::frame;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};
@@ -52,7 +52,7 @@ pub(crate) fn table(
             frame
                 .modes
                 .as_ref()
-                .map(|modes| shake::report::mode_table(modes, &frame.damping_ratios)),
+                .map(|modes| frame::report::mode_table(modes, &frame.damping_ratios)),
         );
     }
     body.push(rows(procedure, impacts));
@@ -94,8 +94,8 @@ fn struck(
         "Floor {} is struck in every impact. Contact law: {}. {} Time step {}; critical time step {}.",
         frame.struck + 1,
         impact.contact.title(),
-        shake::report::integrated(
-            shake::report::frame_of(run, impact.specimen),
+        frame::report::integrated(
+            frame::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
             &target.damping,
             &frame.damping_ratios
@@ -145,7 +145,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
                     .map_or_else(|| "—".to_owned(), text)
                     .into()
             };
-            shake::report::known_entry(procedure, kind, storey).unwrap_or_else(plain)
+            frame::report::known_entry(procedure, kind, storey).unwrap_or_else(plain)
         };
         let share = |values: &[f64]| {
             let share = height(storey)
@@ -160,7 +160,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
             share(largest).into(),
             length(left, stayed),
             share(stayed).into(),
-            shake::report::known_entry(procedure, schema::STOREY_ENERGY, storey).unwrap_or_else(
+            frame::report::known_entry(procedure, schema::STOREY_ENERGY, storey).unwrap_or_else(
                 || number::text_beside(took, whole(energy), Dimension::ENERGY).into(),
             ),
         ]
@@ -203,7 +203,7 @@ fn rows(procedure: &ProcedureRecord, impacts: &[SeriesImpact]) -> Block {
             None => "incomplete",
         };
         let known = |list: ResultKind, other: Text| {
-            shake::report::known_entry(procedure, list, index).unwrap_or(other)
+            frame::report::known_entry(procedure, list, index).unwrap_or(other)
         };
         let rest = impact
             .rest_of_struck()

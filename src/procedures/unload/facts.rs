@@ -3,7 +3,7 @@
 
 use super::figures;
 use crate::procedures::facts::{Facts, Leaves, Recorded, Tests};
-use crate::procedures::shake::figures::charts::{entries_of, members_of};
+use crate::procedures::frame::charts::{entries_of, members_of};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::record::Unloaded;
 use psd_plan::{Specimen, Unload};

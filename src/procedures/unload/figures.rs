@@ -1,7 +1,7 @@
 //! The figure of an unloaded frame, with its caption. In: the moves of an unloading. Out: a [`Chart`] in SI.
 
-use crate::procedures::shake::figures::charts;
-use crate::procedures::shake::figures::storey_shear;
+use crate::procedures::frame::captions::storey_shear;
+use crate::procedures::frame::charts;
 use crate::report::Run;
 use crate::report::figures::chart::Chart;
 use crate::report::wording::specimen::measured;

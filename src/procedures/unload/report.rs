@@ -1,6 +1,6 @@
 //! An unloaded frame as a report states it: its storeys or elements before and after. In: a plan and a record. Out: blocks.
 
-use crate::procedures::shake::report::{frame_of, has_tangents, known_entry};
+use crate::procedures::frame::report::{frame_of, has_tangents, known_entry};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};

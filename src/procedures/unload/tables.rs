@@ -1,6 +1,9 @@
 //! The table of an unloading: a row a move of one degree of freedom, or a row a floor or an element of a frame. In: steps. Out: columns.
 
-use crate::procedures::shake;
+use crate::procedures::frame;
+use crate::procedures::frame::tables::{
+    FloorRow, forces, joined, positions, storey, written_steps,
+};
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
 use psd_physics::structure::substructures::Assemblies;
@@ -17,6 +20,27 @@ const MOVES: &[TableColumn<UnloadStep>] = &[
     Optional(columns::TANGENT_STIFFNESS, |step| step.tangent_stiffness[0]),
 ];
 
+/// The columns of the floors of a frame.
+fn unloaded<'a>() -> Vec<TableColumn<FloorRow<'a, UnloadStep>>> {
+    let step = vec![
+        Integer(columns::STEP, |row: &FloorRow<'a, UnloadStep>| {
+            row.step.step
+        }),
+        storey(),
+        Number(columns::WALL_TIME, |row| row.step.wall_time),
+    ];
+    let tangents = vec![Optional(
+        columns::TANGENT_STIFFNESS,
+        |row: &FloorRow<'a, UnloadStep>| row.step.tangent_stiffness[row.floor],
+    )];
+    joined([step, positions(), forces(), tangents])
+}
+
+/// The table of the floors of a frame; step 0 is the start of the unloading.
+pub(crate) fn unloading(steps: &[UnloadStep], scaled: Option<&Assemblies>) -> Vec<WrittenColumn> {
+    written_steps(unloaded(), steps, scaled)
+}
+
 /// An element of a frame of matrices after a move.
 struct ElementRow<'a> {
     step: &'a UnloadStep,
@@ -25,7 +49,7 @@ struct ElementRow<'a> {
     on_the_rig: Option<[f64; 3]>,
 }
 
-impl shake::tables::OnTheRig for ElementRow<'_> {
+impl frame::tables::OnTheRig for ElementRow<'_> {
     fn on_the_rig(&self) -> Option<[f64; 3]> {
         self.on_the_rig
     }
@@ -49,14 +73,14 @@ fn elements<'a>(is_scaled: bool) -> Vec<TableColumn<ElementRow<'a>>> {
         }),
     ];
     if is_scaled {
-        columns.extend(shake::tables::on_the_rig());
+        columns.extend(frame::tables::on_the_rig());
     }
     columns
 }
 
 /// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
-    let of_floors = shake::tables::columns(shake::tables::unloaded());
+    let of_floors = frame::tables::columns(unloaded());
     [numeric(MOVES), of_floors, numeric(&elements(true))].concat()
 }
 
@@ -69,7 +93,7 @@ pub(crate) fn table(
     let of = history.of;
     Table::of(name, &history.steps, move |steps| match of {
         Unloaded::OneAxis => written(MOVES, steps),
-        Unloaded::Floors => shake::tables::unloading(steps, scaled.as_ref()),
+        Unloaded::Floors => unloading(steps, scaled.as_ref()),
         Unloaded::Elements => elements_written(steps, scaled.as_ref()),
     })
 }

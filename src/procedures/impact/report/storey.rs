@@ -2,7 +2,7 @@
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
 use super::{contact_log, contact_work, energy_balance};
-use crate::procedures::shake;
+use crate::procedures::frame;
 use crate::procedures::stepping::energy;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::sections::results::{budget_table, tracking};
@@ -45,7 +45,7 @@ pub(crate) fn report(
     sentences.extend(struck_mass(run, impact, target));
     sentences.extend(tracking::sentence(procedure));
     body.push(Block::paragraph(sentences.join(" ")));
-    body.push(shake::report::mode_table(modes, &struck.damping_ratios));
+    body.push(frame::report::mode_table(modes, &struck.damping_ratios));
     if struck.floors.is_empty() {
         return;
     }
@@ -54,14 +54,14 @@ pub(crate) fn report(
         .specimens
         .get(impact.specimen)
         .and_then(|specimen| specimen.frame.as_ref());
-    body.push(shake::report::storey_table(
+    body.push(frame::report::storey_table(
         procedure,
         &struck.floors,
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
-    body.extend(shake::report::element_table(procedure, &struck.floors));
-    body.extend(shake::report::noise_note(run, &struck.floors));
+    body.extend(frame::report::element_table(procedure, &struck.floors));
+    body.extend(frame::report::noise_note(run, &struck.floors));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure, frame));
     energy_balance(contact_work(run, index), history, body);
@@ -89,8 +89,8 @@ fn method(
             struck.struck + 1,
             impact.contact.title()
         ),
-        shake::report::integrated(
-            shake::report::frame_of(run, impact.specimen),
+        frame::report::integrated(
+            frame::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
             &target.damping,
             &struck.damping_ratios,
@@ -167,7 +167,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         vec![
             format!("{word} {}", storey + 1).into(),
-            shake::report::entry(result, storey),
+            frame::report::entry(result, storey),
             energy::fraction(*energy, input).into(),
         ]
     };

@@ -5,7 +5,7 @@ use super::hybrid::{
     COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
     shaken, struck, twice,
 };
-use crate::procedures::shake::tables;
+use crate::procedures::unload::tables;
 use crate::tests::testing::run_unwatched;
 use polars::prelude::Column;
 use psd_physics::structure::substructures::Assemblies;
