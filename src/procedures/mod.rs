@@ -250,31 +250,29 @@ pub(crate) fn attribute(
     let attribute = &mut |fits: &Fits<'_>| {
         common::fit_uncertainty::attribute(fits, plan, procedure, &instruments, results);
     };
-    match history {
-        History::StiffnessRamp(found) => {
-            if let ProcedureKind::StiffnessRamp(ramp) = kind {
-                stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
-            }
+    match (kind, history) {
+        (ProcedureKind::StiffnessRamp(ramp), History::StiffnessRamp(found)) => {
+            stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
         }
-        History::DampingSweep(found) => {
-            if let ProcedureKind::DampingSweep(sweep) = kind {
-                damping_sweep::uncertainty::propagate(
-                    sweep, found, plan, inputs, declared, results,
-                );
-            }
+        (ProcedureKind::DampingSweep(sweep), History::DampingSweep(found)) => {
+            damping_sweep::uncertainty::propagate(sweep, found, plan, inputs, declared, results);
         }
-        History::Cycle(found) => {
-            if let ProcedureKind::Cycle(cycle) = kind {
-                cycle::uncertainty::with_fits(found, cycle, &instruments, attribute);
-            }
+        (ProcedureKind::Cycle(cycle), History::Cycle(found)) => {
+            cycle::uncertainty::with_fits(found, cycle, &instruments, attribute);
         }
-        History::Impact(_)
-        | History::Shake(_)
-        | History::Escalate(_)
-        | History::Move(_)
-        | History::Unload(_)
-        | History::Preload
-        | History::Inspect => return,
+        (
+            _,
+            History::StiffnessRamp(_)
+            | History::DampingSweep(_)
+            | History::Cycle(_)
+            | History::Impact(_)
+            | History::Shake(_)
+            | History::Escalate(_)
+            | History::Move(_)
+            | History::Unload(_)
+            | History::Preload
+            | History::Inspect,
+        ) => return,
     }
     common::fit_uncertainty::combine(results);
 }
@@ -380,16 +378,19 @@ pub(crate) fn chart(
     procedure: &ProcedureRecord,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
+    let planned = &run.plan.procedures.get(figure.procedure.0)?.kind;
     let (name, kind) = (&procedure.name, figure.kind);
-    match &procedure.history {
-        History::StiffnessRamp(history) => stiffness_ramp::figures::chart(name, history, kind),
-        History::DampingSweep(history) => damping_sweep::figures::chart(name, history, kind),
-        History::Impact(history) => impact::figures::chart(run, name, history, figure),
-        History::Shake(history) => shake::figures::chart(run, name, history, figure),
-        History::Cycle(history) => cycle::figures::chart(name, history, kind),
-        History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
-        History::Unload(history) => unload::figures::chart(run, name, history, kind),
-        History::Move(_) | History::Preload | History::Inspect => None,
+    match (planned, &procedure.history) {
+        (_, History::StiffnessRamp(history)) => stiffness_ramp::figures::chart(name, history, kind),
+        (_, History::DampingSweep(history)) => damping_sweep::figures::chart(name, history, kind),
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::figures::chart(run, impact, name, history, figure)
+        }
+        (_, History::Shake(history)) => shake::figures::chart(run, name, history, figure),
+        (_, History::Cycle(history)) => cycle::figures::chart(name, history, kind),
+        (_, History::Escalate(history)) => escalate::figures::chart(run, name, history, figure),
+        (_, History::Unload(history)) => unload::figures::chart(run, name, history, kind),
+        (_, History::Impact(_) | History::Move(_) | History::Preload | History::Inspect) => None,
     }
 }
 
@@ -470,24 +471,35 @@ pub(crate) fn report(
     procedure: &ProcedureRecord,
     body: &mut Vec<Block>,
 ) {
-    match &procedure.history {
-        History::StiffnessRamp(history) => stiffness_ramp::report::report(history, body),
-        History::DampingSweep(history) => damping_sweep::report::report(history, body),
-        History::Impact(history) => match &history.frame {
-            Some(struck) => {
-                impact::report::storey::report(run, index, procedure, history, struck, body);
-            }
-            None => impact::report::report(run, index, procedure, history, body),
-        },
-        History::Cycle(history) => cycle::report::table(history, body),
-        History::Shake(history) => {
-            shake::report::shaken(run, index, procedure, history, body);
+    let Some(planned) = run.plan.procedures.get(index) else {
+        return;
+    };
+    match (&planned.kind, &procedure.history) {
+        (_, History::StiffnessRamp(history)) => stiffness_ramp::report::report(history, body),
+        (_, History::DampingSweep(history)) => damping_sweep::report::report(history, body),
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::report::report(run, impact, procedure, history, body);
         }
-        History::Escalate(history) => {
-            escalate::report::table(run, index, procedure, history, body);
+        (_, History::Cycle(history)) => cycle::report::table(history, body),
+        (ProcedureKind::Shake(shake), History::Shake(history)) => {
+            shake::report::report(run, shake, procedure, history, body);
         }
-        History::Unload(history) => unload::report::report(run, index, procedure, history, body),
-        History::Move(_) | History::Preload | History::Inspect => {}
+        (ProcedureKind::Escalate(series), History::Escalate(history)) => {
+            escalate::report::table(run, &series.impact, procedure, history, body);
+        }
+        (ProcedureKind::Unload(unload), History::Unload(history)) => {
+            unload::report::report(run, unload, procedure, history, body);
+        }
+        (
+            _,
+            History::Impact(_)
+            | History::Shake(_)
+            | History::Escalate(_)
+            | History::Unload(_)
+            | History::Move(_)
+            | History::Preload
+            | History::Inspect,
+        ) => {}
     }
 }
 

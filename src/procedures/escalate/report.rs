@@ -10,7 +10,7 @@ use psd_plan::record::{
     EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame,
 };
 use psd_plan::schema::ResultKind;
-use psd_plan::{Frame, Impact, ProcedureKind, StoreyTarget};
+use psd_plan::{Frame, Impact, StoreyTarget};
 use psd_text::units::Dimension;
 
 /// Impacts printed; the tables hold every one.
@@ -18,7 +18,7 @@ const PRINTED: usize = 40;
 
 pub(crate) fn table(
     run: &Run<'_>,
-    index: usize,
+    impact: &Impact,
     procedure: &ProcedureRecord,
     history: &EscalateHistory,
     body: &mut Vec<Block>,
@@ -27,12 +27,6 @@ pub(crate) fn table(
     if impacts.is_empty() {
         return;
     }
-    let Some(ProcedureKind::Escalate(planned)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
-    let impact = &planned.impact;
     if let (
         Some(target),
         [
@@ -63,11 +57,7 @@ pub(crate) fn table(
         )));
     }
     if impact.storey().is_some() {
-        let frame = run
-            .plan
-            .specimens
-            .get(impact.specimen)
-            .and_then(|specimen| specimen.frame.as_ref());
+        let frame = frame::report::frame_of(run, impact.specimen);
         body.push(storeys(procedure, frame));
         body.push(Block::note(
             "X is the displacement of the struck floor from its initial position. Each impact starts with the striker \

@@ -39,7 +39,7 @@ pub(crate) fn storey_shear(run: &Run<'_>) -> String {
 }
 
 /// The sum of the restoring forces in a caption, with what of it was measured.
-pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
+fn restoring_forces(run: &Run<'_>) -> String {
     let frame = run.plan.frame_on_the_rig();
     let sum = measured("restoring forces", frame);
     match frame.and_then(weights) {
@@ -59,4 +59,15 @@ pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
         "{name}: tracking error of each {of}'s actuator{chosen}, and the tracking indicator of all of them over the \
          largest command; a falling indicator shows that lag adds energy to the test."
     )
+}
+
+/// The caption of the mode shapes.
+pub(crate) fn modes(name: &str) -> String {
+    format!("{name}: natural mode shapes and periods, floor by floor from the ground up.")
+}
+
+/// The caption of the base shear.
+pub(crate) fn base_shear(run: &Run<'_>, name: &str) -> String {
+    let forces = restoring_forces(run);
+    format!("{name}: base shear, the sum of the {forces}, against simulated time.")
 }

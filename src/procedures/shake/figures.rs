@@ -49,7 +49,7 @@ pub(crate) fn chart(
     Some(match figure.kind {
         FigureKind::Modes => (
             charts::modes(history.modes.as_ref()?),
-            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
+            captions::modes(name),
         ),
         FigureKind::Ground => (
             ground(history),
@@ -73,10 +73,7 @@ pub(crate) fn chart(
         ),
         FigureKind::BaseShear => (
             charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
-            format!(
-                "{name}: base shear, the sum of the {}, against simulated time.",
-                captions::restoring_forces(run)
-            ),
+            captions::base_shear(run, name),
         ),
         FigureKind::Energy => (
             energy(history),

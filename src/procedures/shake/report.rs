@@ -11,22 +11,17 @@ use crate::report::sections::results::{actuators, tracking};
 use crate::report::{Run, number};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors, ProcedureRecord, ShakeHistory};
-use psd_plan::{Ground, ProcedureKind, Shake};
+use psd_plan::{Ground, Shake};
 use psd_text::units::Dimension;
 
 /// The blocks below the results of a ground-motion test: its integration, the modes, the storeys, the energy.
-pub(crate) fn shaken(
+pub(crate) fn report(
     run: &Run<'_>,
-    index: usize,
+    shake: &Shake,
     procedure: &ProcedureRecord,
     history: &ShakeHistory,
     body: &mut Vec<Block>,
 ) {
-    let Some(ProcedureKind::Shake(shake)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
     let Some(modes) = &history.modes else { return };
     body.push(Block::paragraph(
         integration(run, shake, procedure, history).join(" "),

@@ -7,20 +7,20 @@ use crate::report::{Run, number};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::record::{Floors, ProcedureRecord, UnloadHistory, UnloadStep, Unloaded};
 use psd_plan::schema::ResultKind;
-use psd_plan::{Element, Part};
+use psd_plan::{Element, Part, Unload};
 use psd_text::units::Dimension;
 
 /// The blocks below the results; none for one degree of freedom.
 pub(crate) fn report(
     run: &Run<'_>,
-    index: usize,
+    unload: &Unload,
     procedure: &ProcedureRecord,
     history: &UnloadHistory,
     body: &mut Vec<Block>,
 ) {
     match history.of {
         Unloaded::OneAxis => {}
-        Unloaded::Floors => floors(run, index, procedure, &history.steps, body),
+        Unloaded::Floors => floors(run, unload, procedure, &history.steps, body),
         Unloaded::Elements => elements(run, procedure, &history.steps, body),
     }
 }
@@ -28,7 +28,7 @@ pub(crate) fn report(
 /// The storeys at zero restoring force, with their permanent drifts.
 fn floors(
     run: &Run<'_>,
-    index: usize,
+    unload: &Unload,
     procedure: &ProcedureRecord,
     steps: &[UnloadStep],
     body: &mut Vec<Block>,
@@ -36,12 +36,7 @@ fn floors(
     let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
         return;
     };
-    let specimen = run
-        .plan
-        .procedures
-        .get(index)
-        .and_then(|planned| planned.kind.specimen());
-    let frame = specimen.and_then(|specimen| frame_of(run, specimen));
+    let frame = frame_of(run, unload.specimen);
     let moves = steps.len() - 1;
     let by = if frame.is_some_and(|frame| !has_tangents(frame)) {
         "each with the initial stiffness matrix"

@@ -13,24 +13,21 @@ use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
 
-/// A figure and its caption; None before the first step, or for a figure of a different procedure.
-pub(crate) fn chart(
+/// A figure of a frame alone, and its caption; None for a figure of a different procedure.
+pub(super) fn chart(
     run: &Run<'_>,
     name: &str,
     history: &ImpactHistory,
     frame: &StruckFrame,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
-    if frame.floors.is_empty() {
-        return None;
-    }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
     let chosen = frame::charts::chosen_members(&frame.floors);
     let struck = frame.struck + 1;
     Some(match figure.kind {
         FigureKind::Modes => (
             frame::charts::modes(frame.modes.as_ref()?),
-            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
+            frame::captions::modes(name),
         ),
         FigureKind::Displacement => {
             let mut chart = shaded(history, frame::charts::displacement(&frame.floors));
@@ -59,10 +56,7 @@ pub(crate) fn chart(
                 history,
                 frame::charts::base_shear(&frame.floors, &limits(schema::MAX_BASE_SHEAR)),
             ),
-            format!(
-                "{name}: base shear, the sum of the {}, against simulated time.",
-                frame::captions::restoring_forces(run)
-            ),
+            frame::captions::base_shear(run, name),
         ),
         FigureKind::Velocity => {
             let mut chart =
@@ -85,22 +79,6 @@ pub(crate) fn chart(
                 ),
             )
         }
-        FigureKind::StrikerVelocity => (
-            charts::striker_velocity(history),
-            format!(
-                "{name}: velocity of the striker against simulated time; each drop is a contact."
-            ),
-        ),
-        FigureKind::ContactForce => (
-            charts::contact_force(history, &limits(schema::MAX_CONTACT_FORCE)),
-            format!("{name}: contact force, mean over each step, against simulated time."),
-        ),
-        FigureKind::Energy => (
-            charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
-            format!(
-                "{name}: parts of the striker's energy, all storeys together; their total is the energy put in, if the balance closes."
-            ),
-        ),
         FigureKind::Tracking => (
             shaded(history, frame::charts::tracking(&frame.floors)),
             frame::captions::followed(run, name, chosen),
