@@ -9,7 +9,8 @@ use psd_plan::formula::{
 };
 use psd_plan::procedures::{escalate, impact, shake};
 use psd_plan::record::{
-    EscalateHistory, FloorMotion, Floors, History, ImpactHistory, SeriesImpact, ShakeHistory,
+    EscalateHistory, FloorMotion, Floors, History, ImpactHistory, Integrated, SeriesImpact,
+    ShakeHistory,
 };
 use psd_plan::schema::{BlockKind, Peak, ResultKind};
 use psd_plan::uncertainty::{Contribution, Source};
@@ -43,24 +44,17 @@ pub(super) fn growing(history: &History, result: &str, name: &str) -> Option<Str
 }
 
 fn growth(history: &History, result: &str, name: &str) -> Option<Growth> {
-    match history {
-        History::Impact(history) => {
+    match history.integrated()? {
+        Integrated::Impact(history) => {
             of_impact(history, peak_of(&impact::block::BLOCK, result)?, name)
         }
-        History::Escalate(history) => {
+        Integrated::Impacts(history) => {
             of_series(history, escalate::block::BLOCK.result(result)?, name)
         }
-        History::Shake(history) => {
+        Integrated::GroundMotion(history) => {
             peak_of(&shake::block::BLOCK, result)?;
             of_shake(history, name)
         }
-        History::StiffnessRamp(_)
-        | History::DampingSweep(_)
-        | History::Cycle(_)
-        | History::Move(_)
-        | History::Unload(_)
-        | History::Preload
-        | History::Inspect => None,
     }
 }
 

@@ -39,7 +39,7 @@ const DRIVERS: &[&str] = &[
 ];
 
 /// Files, besides the dispatch file, that still distinguish procedures or histories. The list may only shrink.
-const DISTINGUISHES_PROCEDURES: &[&str] = &["run/check_run.rs", "verdict/unfinished_peaks.rs"];
+const DISTINGUISHES_PROCEDURES: &[&str] = &["run/check_run.rs"];
 
 fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))

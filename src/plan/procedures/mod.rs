@@ -218,27 +218,44 @@ pub enum History {
     Inspect,
 }
 
+/// The motion that a procedure integrated, step by step.
+#[derive(Clone, Copy, Debug)]
+pub enum Integrated<'a> {
+    Impact(&'a ImpactHistory),
+    Impacts(&'a EscalateHistory),
+    GroundMotion(&'a ShakeHistory),
+}
+
 impl History {
-    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
-    /// first.
+    /// The motion that it integrated; None if it integrated none.
     #[must_use]
-    pub fn above_critical(&self) -> Option<(f64, f64)> {
-        let steps_of = |impact: &ImpactHistory| (impact.time_step, impact.critical_time_step);
-        let mut steps = match self {
-            Self::Impact(impact) => vec![steps_of(impact)],
-            Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
-            Self::Escalate(history) => history
-                .impacts
-                .iter()
-                .map(|impact| steps_of(&impact.history))
-                .collect(),
+    pub const fn integrated(&self) -> Option<Integrated<'_>> {
+        match self {
+            Self::Impact(impact) => Some(Integrated::Impact(impact)),
+            Self::Escalate(series) => Some(Integrated::Impacts(series)),
+            Self::Shake(shake) => Some(Integrated::GroundMotion(shake)),
             Self::StiffnessRamp(_)
             | Self::DampingSweep(_)
             | Self::Cycle(_)
             | Self::Move(_)
             | Self::Unload(_)
             | Self::Preload
-            | Self::Inspect => Vec::new(),
+            | Self::Inspect => None,
+        }
+    }
+
+    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
+    /// first.
+    #[must_use]
+    pub fn above_critical(&self) -> Option<(f64, f64)> {
+        let steps_of = |impact: &ImpactHistory| (impact.time_step, impact.critical_time_step);
+        let mut steps = match self.integrated()? {
+            Integrated::Impact(impact) => vec![steps_of(impact)],
+            Integrated::GroundMotion(shake) => vec![(shake.time_step, shake.critical_time_step)],
+            Integrated::Impacts(series) => {
+                let impacts = series.impacts.iter();
+                impacts.map(|impact| steps_of(&impact.history)).collect()
+            }
         };
         steps.retain(|(step, critical)| step > critical);
         steps.first().copied()

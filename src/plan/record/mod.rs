@@ -14,8 +14,8 @@ mod zero_drift;
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
-pub use crate::procedures::History;
 pub use crate::procedures::histories::*;
+pub use crate::procedures::{History, Integrated};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
