@@ -4,9 +4,9 @@
 
 pub mod equipment;
 pub mod failpoint;
+pub mod floors;
 mod found;
 mod held;
-pub mod history;
 mod identity;
 pub mod remote;
 mod zero_drift;
@@ -16,22 +16,12 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
-pub use crate::procedures::cycle::history::{CycleHistory, CycleStep, WholeCycle};
-pub use crate::procedures::damping_sweep::history::{
-    BroughtTogether, DampingSweepHistory, SweepStep,
-};
-pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
-pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep};
-pub use crate::procedures::move_to::history::MoveStep;
-pub use crate::procedures::preload::history::AxialReading;
-pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
-pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
-pub use crate::procedures::unload::history::{Rest, UnloadStep};
+pub use crate::procedures::histories::*;
+pub use crate::procedures::{History, Integrated};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
+pub use floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use held::Held;
-pub use history::History;
-pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use identity::Identity;
 pub use psd_physics::contact::state::StepState;
 pub use psd_physics::identification::LineFit;

@@ -56,7 +56,7 @@ fn run(
     let energies = plan
         .energies
         .as_ref()
-        .map(|energies| inputs.list(schema::ENERGIES.name, energies))
+        .map(|energies| inputs.list(&schema::ENERGIES, energies))
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();

@@ -4,7 +4,7 @@
 use super::check::time_step::time_step_before_the_run;
 use super::{figures, report, results};
 use crate::procedures::facts::{Delay, Facts, Listed, Motion, Recorded, Tests};
-use crate::procedures::shake::figures::charts::{entries_of, members_of};
+use crate::procedures::frame::charts::{entries_of, members_of};
 use crate::procedures::stepping;
 use crate::procedures::stepping::self_tested::stepped;
 use crate::procedures::stepping::tracking::{delay as actuator_delay, frame_delay};

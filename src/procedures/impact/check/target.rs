@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::codes::E640;
 use crate::procedures::common::violations::NoUseOnAFrame;
-use crate::procedures::shake;
+use crate::procedures::stepping::check::damping_check;
 use psd_language::check::checker::{Checker, Shape};
 use psd_language::check::declarations::specimen;
 use psd_language::check::expressions::fields::whole;
@@ -93,8 +93,8 @@ pub(crate) fn storey(
             foreign = true;
         }
     }
-    let damping = shake::check::damping(checker, block);
-    let damping_uncertainty = shake::check::damping_uncertainty(checker, block, damping.as_ref());
+    let damping = damping_check::damping(checker, block);
+    let damping_uncertainty = damping_check::damping_uncertainty(checker, block, damping.as_ref());
     if foreign {
         return None;
     }
