@@ -177,7 +177,11 @@ mod tests {
     fn a_largest_value_of_a_motion_states_after_which_peak_it_is_final() {
         use crate::procedures::{escalate, impact, shake};
         use procedures::tracking;
-        let of_the_actuator = [tracking::PEAK_ERROR, tracking::TRACKING_ENERGY_ERROR];
+        let of_the_actuator = [
+            tracking::PEAK_ERROR,
+            tracking::FLOOR_PEAK_ERROR,
+            tracking::TRACKING_ENERGY_ERROR,
+        ];
         let motions = [
             impact::block::RESULTS,
             shake::block::RESULTS,
