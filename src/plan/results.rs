@@ -384,8 +384,7 @@ mod tests {
     fn a_moved_source_moves_what_it_is_in_and_nothing_else() {
         let moved = Moved {
             results: &OneLine,
-            source: source("stiffness"),
-            by: -0.5,
+            shifts: &[(source("stiffness"), -0.5)],
         };
         let value = |name| match moved.result(reference(name)) {
             Some(ResultValue::Number {
