@@ -265,11 +265,11 @@ pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<
         .iter()
         .filter(|reference| reference.part == ResultPart::Value)
     {
-        for part in results.contributions(*reference).iter() {
-            if part.amount != 0.0 && known.insert(part.source) {
-                sources.push(part.source);
-            }
-        }
+        let parts = results.contributions(*reference);
+        let first = parts
+            .iter()
+            .filter(|part| part.amount != 0.0 && known.insert(part.source));
+        sources.extend(first.map(|part| part.source));
     }
     sources
 }

@@ -143,7 +143,7 @@ fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
         let symbols = Symbols::new(&tokens, 0, tokens.list.len());
         let error = Grammar::parse(Rule::file, &symbols.text).err();
         let bytes = 0..text.len();
-        errors.extend(error.map(|error| refused(&tokens, &symbols, bytes, Rule::file, &error)));
+        errors.extend(error.map(|error| refused(&tokens, &symbols, &bytes, Rule::file, &error)));
     }
     errors.sort_by_key(|error| error.span().map(|span| (span.start, span.end)));
     (ast, errors)
@@ -188,7 +188,7 @@ fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
 fn refused(
     tokens: &Tokens,
     symbols: &Symbols,
-    bytes: Range<usize>,
+    bytes: &Range<usize>,
     rule: Rule,
     error: &pest::error::Error<Rule>,
 ) -> Diagnostic {
@@ -206,7 +206,7 @@ fn refused(
         ErrorVariant::ParsingError { positives, .. } => rule_names::expected(positives),
         ErrorVariant::CustomError { .. } => "something else".to_owned(),
     };
-    if let Some(form) = foreign::form(tokens, &bytes, at, rule) {
+    if let Some(form) = foreign::form(tokens, bytes, at, rule) {
         return form;
     }
     let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
@@ -301,7 +301,7 @@ impl Pieces<'_> {
             Ok(pairs) => pairs,
             Err(error) => {
                 self.errors
-                    .push(refused(self.tokens, &symbols, start..end, rule, &error));
+                    .push(refused(self.tokens, &symbols, &(start..end), rule, &error));
                 return None;
             }
         };
