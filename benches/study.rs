@@ -1,5 +1,6 @@
 //! Runs of a study: bound and simulated, in batches and one by one, and the share of the binding. The goal is runs per second on one core.
 
+use psd::check::binding::{Binder, BoundInputs};
 use psd::check::{Options, ParsedPlan, no_files};
 use psd::study::definition::Definition;
 use psd::study::simulation::Simulation;
@@ -69,10 +70,12 @@ fn one_by_one(bencher: divan::Bencher) {
 
 #[divan::bench]
 fn binding_alone(bencher: divan::Bencher) {
-    let (parsed, ..) = checked(PLAN);
-    let values = std::collections::BTreeMap::from([(
-        "speed".to_owned(),
-        psd_text::units::Quantity::new(1.1, psd_text::units::Dimension::VELOCITY),
-    )]);
-    bencher.bench_local(|| parsed.bind(&values).is_ok());
+    let (parsed, _, study) = checked(PLAN);
+    let inputs = study.inputs.iter();
+    let inputs = BoundInputs::new(
+        &parsed,
+        inputs.map(|input| (input.name.as_str(), input.dimension)),
+    );
+    let mut binder = Binder::new(&parsed, &inputs);
+    bencher.bench_local(|| binder.bind(&[1.1, 1.01]).is_ok());
 }

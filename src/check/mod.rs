@@ -1,9 +1,11 @@
 //! The check of a whole plan: from its text to the plan, with all errors in one pass. In: the text of the plan and a [`Loader`] for the
 //! files it uses. Out: a [`Checked`]. It asks the procedures for what is theirs, and it runs nothing.
 
+pub mod binding;
 mod driver;
 mod golden;
 mod parsed_plan;
+mod parts;
 mod procedures;
 mod report;
 #[cfg(test)]

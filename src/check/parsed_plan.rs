@@ -1,14 +1,13 @@
-//! A plan that is parsed once and checked as often as its parameters take other values. In: the text of the plan and of its files, then
-//! for each check a number for each parameter that changes. Out: checked plans. After the first check it reads no file.
+//! A plan that is parsed once and checked as often as its parameters take other values. In: the text of the plan and of its files. Out:
+//! checked plans. After the first check it reads no file. Other numbers of its inputs: `binding`.
 
 use std::collections::BTreeMap;
 
 use crate::codes::E666;
 use psd_language::check::checker::{Checker, End};
 use psd_language::check::expressions::data_file::DataFile;
-use psd_language::check::expressions::parameters::{has_let, names_of_parameters, read_settings};
+use psd_language::check::expressions::parameters::read_settings;
 use psd_language::check::scope::{Scope, Setting};
-use psd_language::check::violations::UnknownParameter;
 use psd_language::check::wording::shown;
 use psd_language::check::{imports, rig};
 use psd_language::codes::{E107, W733};
@@ -18,10 +17,9 @@ use psd_plan::schema::Kind;
 use psd_plan::{Plan, PlanFile};
 use psd_text::diagnostic::{Code, Diagnostic, Severity, Violation};
 use psd_text::source::{Sources, Span};
-use psd_text::units::Quantity;
 
-use super::driver::{self, Findings, PlanText};
-use super::{Checked, Loader, Options, no_files};
+use super::driver::{self, Findings, PlanParts, PlanText};
+use super::{Checked, Loader, Options};
 
 /// Checks a plan and all it uses.
 #[must_use]
@@ -35,28 +33,41 @@ pub struct ParsedPlan {
     options: Options,
     /// Every file that was parsed, and every `--set`.
     sources: Sources,
-    trees: Vec<Ast>,
+    pub(super) trees: Vec<Ast>,
     files: Vec<PlanFile>,
-    settings: BTreeMap<String, Setting>,
+    pub(super) settings: BTreeMap<String, Setting>,
     /// Errors that were found before any check.
-    errors: Vec<Diagnostic>,
+    pub(super) errors: Vec<Diagnostic>,
     /// Lines that could not be parsed.
     unread: Vec<Span>,
     /// Whether some file could not be read, so that names may be missing.
     incomplete: bool,
     /// The data files that the last check with a loader read.
-    data: Vec<DataFile>,
+    pub(super) data: Vec<DataFile>,
 }
 
 /// Most ends of inputs at which a plan is checked: each is a check of its own.
 const MOST_ENDS: usize = 64;
 
+/// What a check is made with.
+pub(super) struct Given<'a> {
+    pub scope: &'a Scope<'a>,
+    /// Errors that were found before.
+    pub errors: Vec<Diagnostic>,
+    pub settings: &'a BTreeMap<String, Setting>,
+    /// The numbers that are bound, by their inputs, SI.
+    pub bound: &'a [f64],
+    /// The texts of `--set`.
+    pub written: &'a [(String, String)],
+    pub loader: &'a Loader<'a>,
+    pub data: Vec<DataFile>,
+    pub findings: Findings,
+}
+
 /// The findings of one check.
-struct Outcome {
-    plan: Option<Plan>,
-    diagnostics: Vec<Diagnostic>,
-    rigs: Vec<String>,
-    rig_links: Vec<Span>,
+pub(super) struct Outcome {
+    pub plan: Option<Plan>,
+    pub diagnostics: Vec<Diagnostic>,
     data: Vec<DataFile>,
     ends: Vec<End>,
     tails: Vec<End>,
@@ -190,9 +201,25 @@ impl ParsedPlan {
 
     /// Checks the plan as it is written, with the values of `--set`. Keeps the data files that the plan names for [`Self::bind`].
     pub fn check(&mut self, loader: &Loader<'_>) -> Checked {
-        let settings = self.written_settings();
-        let mut outcome =
-            self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
+        let mut errors = self.errors.clone();
+        let scope = Scope::collect(&self.trees, &self.settings, &mut errors);
+        let given = Given {
+            scope: &scope,
+            errors,
+            settings: &self.settings,
+            bound: &[],
+            written: &self.written_settings(),
+            loader,
+            data: Vec::new(),
+            findings: Findings::WarningsToo,
+        };
+        let mut rigs = Vec::new();
+        let mut rig_links = Vec::new();
+        let mut outcome = self.evaluate(given, &mut PlanParts::default(), None, |checker| {
+            let declared = checker.scope.of_kind(Kind::Rig);
+            rigs.extend(declared.filter_map(|(_, block)| Some(block.name?.node.clone())));
+            rig_links = rig::links_of_run(checker, self.options.rig.as_deref());
+        });
         self.data = std::mem::take(&mut outcome.data);
         self.try_ends(&mut outcome);
         cap(&mut outcome.diagnostics);
@@ -200,8 +227,8 @@ impl ParsedPlan {
             plan: outcome.plan,
             diagnostics: outcome.diagnostics,
             sources: self.sources.clone(),
-            rigs: outcome.rigs,
-            rig_links: outcome.rig_links,
+            rigs,
+            rig_links,
         }
     }
 
@@ -260,104 +287,52 @@ impl ParsedPlan {
         }
     }
 
-    /// The plan with other values of its inputs, named as by `--set`: a `param`, or a field such as `beam.mass`. Its expressions are
-    /// evaluated and checked again, but no text is parsed. An input without a value here keeps the one of `--set`, else its own. The
-    /// plan has no studies. To be called after [`Self::check`] found no error.
-    ///
-    /// # Errors
-    /// The errors of the plan with these values: an unknown input, a value with a wrong dimension or outside its bounds, and any
-    /// other error of the plan.
-    pub fn bind(&self, values: &BTreeMap<String, Quantity>) -> Result<Plan, Vec<Diagnostic>> {
-        self.bound(values, Findings::ErrorsAlone)
+    /// The texts of `--set`, in order of their names; if several have one name, the last.
+    pub(super) fn written_settings(&self) -> Vec<(String, String)> {
+        let settings: BTreeMap<_, _> = self.options.settings.iter().cloned().collect();
+        settings.into_iter().collect()
     }
 
-    /// [`Self::bind`] with the studies of the plan, whose formulas may contain the values.
-    ///
-    /// # Errors
-    /// As [`Self::bind`].
-    pub fn bind_with_studies(
+    /// Checks the trees. With the parts and the plan of a check before, only what bound values reach. `also` asks the checker afterwards.
+    pub(super) fn evaluate(
         &self,
-        values: &BTreeMap<String, Quantity>,
-    ) -> Result<Plan, Vec<Diagnostic>> {
-        self.bound(values, Findings::OfStudies)
-    }
-
-    fn bound(
-        &self,
-        values: &BTreeMap<String, Quantity>,
-        findings: Findings,
-    ) -> Result<Plan, Vec<Diagnostic>> {
-        let known = names_of_parameters(&self.trees);
-        let unknown: Vec<Diagnostic> = values
-            .keys()
-            .filter(|name| !known.contains(&name.as_str()) && !name.contains('.'))
-            .map(|name| {
-                UnknownParameter {
-                    name,
-                    known: &known,
-                    calculated: has_let(&self.trees, name),
-                }
-                .diagnostic()
-            })
-            .collect();
-        if !unknown.is_empty() {
-            return Err(unknown);
-        }
-        let mut settings = self.settings.clone();
-        let mut written = self.written_settings();
-        for (name, value) in values {
-            settings.insert(name.clone(), Setting::Bound(*value));
-            written.insert(name.clone(), value.in_plan_syntax());
-        }
-        let outcome = self.evaluate(&settings, written, &no_files, findings, &self.data);
-        outcome.plan.ok_or(outcome.diagnostics)
-    }
-
-    /// The texts of `--set`, by name; if several have one name, the last.
-    fn written_settings(&self) -> BTreeMap<String, String> {
-        self.options.settings.iter().cloned().collect()
-    }
-
-    /// Checks the trees with these settings, whose text is in `written`, and with these data files.
-    fn evaluate(
-        &self,
-        settings: &BTreeMap<String, Setting>,
-        written: BTreeMap<String, String>,
-        loader: &Loader<'_>,
-        findings: Findings,
-        data: &[DataFile],
+        given: Given<'_>,
+        parts: &mut PlanParts,
+        before: Option<Plan>,
+        also: impl FnOnce(&Checker<'_>),
     ) -> Outcome {
-        let mut errors = self.errors.clone();
-        let scope = Scope::collect(&self.trees, settings, &mut errors);
         let mut checker = Checker::new(
             &self.sources,
-            &scope,
-            loader,
-            errors,
+            given.scope,
+            given.loader,
+            given.errors,
             self.unread.clone(),
             self.incomplete,
         );
-        checker.data = data.to_vec();
+        checker.data = given.data;
+        checker.bound = given.bound;
         checker.real_rig = rig::real_rig_of_run(&checker, self.options.rig.as_deref());
-        checker.override_fields(settings);
+        checker.override_fields(given.settings);
         let text = PlanText {
             name: &self.name,
-            files: self.files.clone(),
-            settings: written.into_iter().collect(),
+            files: &self.files,
+            settings: given.written,
         };
-        let plan = driver::plan(&mut checker, text, &self.options, findings);
-        let rigs = checker.scope.of_kind(Kind::Rig);
-        let rigs = rigs.filter_map(|(_, block)| block.name.map(|name| name.node.clone()));
-        let rigs = rigs.collect();
-        let rig_links = rig::links_of_run(&checker, self.options.rig.as_deref());
+        let plan = driver::plan(
+            &mut checker,
+            parts,
+            before,
+            &text,
+            &self.options,
+            given.findings,
+        );
+        also(&checker);
         let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
         let misspelt: Vec<Span> = misspelt.copied().collect();
         let diagnostics = driver::reportable(checker.diagnostics, &misspelt, checker.explained);
         Outcome {
             plan: plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)),
             diagnostics,
-            rigs,
-            rig_links,
             data: checker.data,
             ends: checker.ends,
             tails: checker.tails,

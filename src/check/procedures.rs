@@ -14,22 +14,15 @@ use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::suggest::with_article;
 
-/// Every procedure; None for those with an error.
-pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {
-    let blocks: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
-    blocks
-        .into_iter()
-        .map(|block| (block, procedure(checker, block)))
-        .collect()
-}
-
-fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
+/// A procedure with its block; None if it has an error.
+pub fn procedure(checker: &mut Checker, block: usize) -> (usize, Option<Procedure>) {
     let kind = procedures::check(checker, block);
-    let declared = &checker.scope.blocks[block];
-    Some(Procedure {
-        name: declared.name?.node.clone(),
-        kind: kind?,
-    })
+    let name = checker.scope.blocks[block].name;
+    let procedure = name.zip(kind).map(|(name, kind)| Procedure {
+        name: name.node.clone(),
+        kind,
+    });
+    (block, procedure)
 }
 
 #[derive(Violation)]

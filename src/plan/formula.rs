@@ -3,7 +3,7 @@
 //! uncertainty.
 
 use super::contribution::{Contribution, combined, combined_entries};
-use super::results::{Moved, sources_of};
+use super::results::{Moved, ReadOnce, sources_of};
 pub use super::results::{
     NoResults, ResultPart, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
@@ -135,25 +135,15 @@ impl Formula {
         if sources.is_empty() {
             return Ok(Vec::new());
         }
+        let results = &ReadOnce::new(&references, results);
         let value = self.number(results, critical)?;
         let effect = |source| {
             // Half the effect of a perturbation by ±u: exact for a linear formula.
-            let up = self.number(
-                &Moved {
-                    results,
-                    source,
-                    by: 1.0,
-                },
-                critical,
-            )?;
-            let down = self.number(
-                &Moved {
-                    results,
-                    source,
-                    by: -1.0,
-                },
-                critical,
-            )?;
+            let moved = |by| {
+                let shifts = &[(source, by)];
+                self.number(&Moved { results, shifts }, critical)
+            };
+            let (up, down) = (moved(1.0)?, moved(-1.0)?);
             let (above, below) = (up - value, value - down);
             // Finer steps are to one side.
             if !source.is_of_uncertainty() {

@@ -46,21 +46,7 @@ pub use psd_physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
-pub use procedures::cycle::parameters::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use procedures::damping_sweep::parameters::DampingSweep;
-pub use procedures::escalate::parameters::{Between, Escalate, MOST_IMPACTS};
-pub use procedures::impact::parameters::{
-    Contact, Impact, ImpactTarget, PointTarget, StoreyTarget,
-};
-pub use procedures::mode::Mode;
-pub use procedures::move_to::parameters::Move;
-pub use procedures::preload::parameters::Preload;
-pub use procedures::shake::parameters::Shake;
-pub use procedures::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
-pub use procedures::stiffness_ramp::parameters::{
-    BreakCount, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
-};
-pub use procedures::unload::parameters::Unload;
+pub use procedures::parameters::*;
 pub use procedures::{ProcedureBlock, ProcedureKind};
 pub use psd_physics::statistics::DeclaredNoise;
 pub use report::annex::Annex;

@@ -1,6 +1,9 @@
 //! Results of procedures, as formulas read them. In: a reference to a result. Out: its value and its contributions, or both with one
 //! source perturbed.
 
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
 use super::contribution::Contribution;
 use super::source::{ProcedureId, Source};
 
@@ -97,7 +100,7 @@ pub trait Results: Sync {
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
 
     /// The uncertainty contributions of the result; by default its whole uncertainty is one separate contribution.
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         let ResultReference {
             procedure, name, ..
         } = reference;
@@ -106,15 +109,13 @@ pub trait Results: Sync {
                 uncertainty: Some(own),
                 ..
             }) => {
-                vec![Contribution::new(
-                    Source::Fit {
-                        procedure,
-                        result: name,
-                    },
-                    own,
-                )]
+                let result = Source::Fit {
+                    procedure,
+                    result: name,
+                };
+                vec![Contribution::new(result, own)].into()
             }
-            _ => Vec::new(),
+            _ => Cow::default(),
         }
     }
 
@@ -143,50 +144,39 @@ impl Results for NoResults {
     }
 }
 
-/// Results as they would be with one source perturbed.
+/// Results as they would be with these sources perturbed, each by so many of its standard uncertainties.
 pub struct Moved<'a> {
     pub results: &'a dyn Results,
-    pub source: Source,
-    /// In standard uncertainties of the source.
-    pub by: f64,
+    pub shifts: &'a [(Source, f64)],
 }
 
 impl Results for Moved<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
-        let found = self.results.result(reference)?;
+        let mut found = self.results.result(reference)?;
         if reference.part != ResultPart::Value {
             return Some(found);
         }
         let parts = self.results.contributions(reference);
-        let mine = parts.iter().filter(|part| part.source == self.source);
-        Some(match found {
-            ResultValue::Number {
-                value: Some(value),
-                uncertainty,
-            } => {
-                let value = mine.fold(value, |value, part| value + self.by * part.amount);
-                ResultValue::Number {
-                    value: Some(value),
-                    uncertainty,
+        for (source, by) in self.shifts {
+            for part in parts.iter().filter(|part| part.source == *source) {
+                let value = match &mut found {
+                    ResultValue::Number { value, .. } => value.as_mut(),
+                    ResultValue::List(values) => values.get_mut(part.entry),
+                };
+                if let Some(value) = value {
+                    *value += by * part.amount;
                 }
             }
-            ResultValue::List(mut values) => {
-                for part in mine {
-                    if let Some(value) = values.get_mut(part.entry) {
-                        *value += self.by * part.amount;
-                    }
-                }
-                ResultValue::List(values)
-            }
-            none @ ResultValue::Number { .. } => none,
-        })
+        }
+        Some(found)
     }
 
     fn moved(&self, source: Source) -> f64 {
-        self.results.moved(source) + if source == self.source { self.by } else { 0.0 }
+        let mine = self.shifts.iter().filter(|(shifted, _)| *shifted == source);
+        mine.fold(self.results.moved(source), |moved, (_, by)| moved + by)
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         self.results.contributions(reference)
     }
 
@@ -203,39 +193,83 @@ impl Results for Moved<'_> {
     }
 }
 
-/// Calls with results that have each of these sources perturbed, by so many of its standard uncertainties.
-pub fn with_shifts<T>(
-    results: &dyn Results,
-    shifts: &[(Source, f64)],
-    then: &mut dyn FnMut(&dyn Results) -> T,
-) -> T {
-    match shifts.split_first() {
-        None => then(results),
-        Some(((source, by), rest)) => with_shifts(
-            &Moved {
-                results,
-                source: *source,
-                by: *by,
-            },
-            rest,
-            then,
-        ),
+/// Results of which some are read once for each source: value and contributions of these are found once. In finer steps, a value is a
+/// sum over its contributions.
+pub struct ReadOnce<'a> {
+    results: &'a dyn Results,
+    found: Vec<Found<'a>>,
+}
+
+struct Found<'a> {
+    reference: ResultReference,
+    value: Option<ResultValue>,
+    contributions: Cow<'a, [Contribution]>,
+}
+
+impl<'a> ReadOnce<'a> {
+    #[must_use]
+    pub fn new(references: &[ResultReference], results: &'a dyn Results) -> Self {
+        let found = |reference: &ResultReference| Found {
+            reference: *reference,
+            value: results.result(*reference),
+            contributions: results.contributions(*reference),
+        };
+        Self {
+            results,
+            found: references.iter().map(found).collect(),
+        }
+    }
+
+    fn found(&self, reference: ResultReference) -> Option<&Found<'a>> {
+        self.found.iter().find(|found| found.reference == reference)
+    }
+}
+
+impl Results for ReadOnce<'_> {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        match self.found(reference) {
+            Some(found) => found.value.clone(),
+            None => self.results.result(reference),
+        }
+    }
+
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
+        match self.found(reference) {
+            Some(found) => Cow::Borrowed(&found.contributions),
+            None => self.results.contributions(reference),
+        }
+    }
+
+    fn moved(&self, source: Source) -> f64 {
+        self.results.moved(source)
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.results.degrees(source)
+    }
+
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
+        self.results.uncertainty_status(reference, entry)
     }
 }
 
 /// Every source of the results that are read, each once, in the order of their first appearance.
 #[must_use]
 pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<Source> {
-    let mut sources = Vec::new();
+    let (mut sources, mut known) = (Vec::new(), BTreeSet::new());
     for reference in references
         .iter()
         .filter(|reference| reference.part == ResultPart::Value)
     {
-        for part in results.contributions(*reference) {
-            if part.amount != 0.0 && !sources.contains(&part.source) {
-                sources.push(part.source);
-            }
-        }
+        let parts = results.contributions(*reference);
+        let first = parts
+            .iter()
+            .filter(|part| part.amount != 0.0 && known.insert(part.source));
+        sources.extend(first.map(|part| part.source));
     }
     sources
 }
@@ -279,14 +313,15 @@ mod tests {
             })
         }
 
-        fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
             match reference.name {
-                "stiffness" => vec![Contribution::new(source("stiffness"), 2.0)],
+                "stiffness" => vec![Contribution::new(source("stiffness"), 2.0)].into(),
                 "intercept_force" => vec![
                     Contribution::new(source("stiffness"), 0.5 * CORRELATION),
                     Contribution::new(source("intercept_force"), 0.5 * 0.6),
-                ],
-                name => vec![Contribution::new(source(name), 0.3)],
+                ]
+                .into(),
+                name => vec![Contribution::new(source(name), 0.3)].into(),
             }
         }
     }
@@ -349,8 +384,7 @@ mod tests {
     fn a_moved_source_moves_what_it_is_in_and_nothing_else() {
         let moved = Moved {
             results: &OneLine,
-            source: source("stiffness"),
-            by: -0.5,
+            shifts: &[(source("stiffness"), -0.5)],
         };
         let value = |name| match moved.result(reference(name)) {
             Some(ResultValue::Number {

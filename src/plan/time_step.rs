@@ -3,7 +3,7 @@
 //! and results as they would be there.
 
 use super::contribution::Contribution;
-use super::results::{Results, with_shifts};
+use super::results::{Moved, Results};
 use super::source::{Refinement, Source};
 
 /// Results in finer steps, as weights of the differences in own, half and quarter steps: those in half and in quarter steps, and two bounds
@@ -28,7 +28,8 @@ pub fn in_finer_steps<T>(
         .into_iter()
         .zip(weights)
         .collect();
-    with_shifts(results, &shifts, then)
+    let shifts = &shifts;
+    then(&Moved { results, shifts })
 }
 
 /// The effect of the time step on one number.

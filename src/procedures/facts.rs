@@ -38,12 +38,17 @@ pub(crate) struct Facts<'a> {
     pub figures: &'static [FigureKind],
     /// Those that several procedures of its kind can share, one curve of each.
     pub shared_figures: &'static [FigureKind],
-    /// Its headline results, the most important one first.
-    pub headline: Vec<&'static str>,
-    /// Results that no table of a report prints: zero by construction, without a meaning, or stated in a sentence.
-    pub unprinted: Vec<&'static str>,
     /// The end of the observations that the plan itself implies, so that a report does not print them.
     pub implied: &'static [&'static str],
+}
+
+/// The results of a procedure of the plan, as a report lists them.
+#[derive(Default)]
+pub(crate) struct Listed {
+    /// The most important ones, in order.
+    pub headline: Vec<&'static str>,
+    /// Those that no table prints: zero by construction, without a meaning, or stated in a sentence.
+    pub unprinted: Vec<&'static str>,
 }
 
 /// Facts about the record of a procedure.

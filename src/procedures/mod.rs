@@ -6,6 +6,7 @@ pub mod cycle;
 pub mod damping_sweep;
 pub mod escalate;
 pub(crate) mod facts;
+pub(crate) mod frame;
 pub mod impact;
 pub mod inspect;
 pub mod move_to;
@@ -26,7 +27,8 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use common::calibrated_range;
 use common::fit_uncertainty::Fits;
-use facts::{Delay, Facts, Leaves, Left, Recorded, Tests};
+use common::predicted::Predicted;
+use facts::{Delay, Facts, Leaves, Left, Listed, Recorded, Tests};
 use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
@@ -167,15 +169,28 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
         ProcedureKind::Unload(unload) => unload::facts::facts(unload),
         ProcedureKind::Escalate(series) => escalate::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
-        ProcedureKind::Preload(_) => Facts {
+        ProcedureKind::Preload(_) | ProcedureKind::Inspect { .. } => Facts {
             tests: Tests::Nothing,
+            ..Facts::default()
+        },
+    }
+}
+
+/// Report: the results of a procedure of the plan, as a report lists them.
+pub(crate) fn listed(kind: &ProcedureKind) -> Listed {
+    match kind {
+        ProcedureKind::StiffnessRamp(_) => stiffness_ramp::facts::listed(),
+        ProcedureKind::DampingSweep(_) => damping_sweep::facts::listed(),
+        ProcedureKind::Impact(impact) => impact::facts::listed(impact),
+        ProcedureKind::Shake(_) => shake::facts::listed(),
+        ProcedureKind::Cycle(_) => cycle::facts::listed(),
+        ProcedureKind::Unload(unload) => unload::facts::listed(unload),
+        ProcedureKind::Escalate(_) => escalate::facts::listed(),
+        ProcedureKind::Preload(_) => Listed {
             headline: vec![AXIAL_FORCE.name],
-            ..Facts::default()
+            ..Listed::default()
         },
-        ProcedureKind::Inspect { .. } => Facts {
-            tests: Tests::Nothing,
-            ..Facts::default()
-        },
+        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Listed::default(),
     }
 }
 
@@ -204,11 +219,8 @@ pub(crate) fn recorded(history: &History) -> Recorded {
         History::Shake(history) => shake::facts::recorded(history),
         History::Cycle(_) => cycle::facts::recorded(),
         History::Escalate(_) => escalate::facts::recorded(),
-        History::FrameUnload(_) => unload::facts::recorded_frame(),
-        History::ElementUnload(_) => unload::facts::recorded_elements(),
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {
-            Recorded::default()
-        }
+        History::Unload(history) => unload::facts::recorded(history.of),
+        History::Move(_) | History::Preload | History::Inspect => Recorded::default(),
     }
 }
 
@@ -251,33 +263,29 @@ pub(crate) fn attribute(
     let attribute = &mut |fits: &Fits<'_>| {
         common::fit_uncertainty::attribute(fits, plan, procedure, &instruments, results);
     };
-    match history {
-        History::StiffnessRamp(found) => {
-            if let ProcedureKind::StiffnessRamp(ramp) = kind {
-                stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
-            }
+    match (kind, history) {
+        (ProcedureKind::StiffnessRamp(ramp), History::StiffnessRamp(found)) => {
+            stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
         }
-        History::DampingSweep(found) => {
-            if let ProcedureKind::DampingSweep(sweep) = kind {
-                damping_sweep::uncertainty::propagate(
-                    sweep, found, plan, inputs, declared, results,
-                );
-            }
+        (ProcedureKind::DampingSweep(sweep), History::DampingSweep(found)) => {
+            damping_sweep::uncertainty::propagate(sweep, found, plan, inputs, declared, results);
         }
-        History::Cycle(found) => {
-            if let ProcedureKind::Cycle(cycle) = kind {
-                cycle::uncertainty::with_fits(found, cycle, &instruments, attribute);
-            }
+        (ProcedureKind::Cycle(cycle), History::Cycle(found)) => {
+            cycle::uncertainty::with_fits(found, cycle, &instruments, attribute);
         }
-        History::Impact(_)
-        | History::Shake(_)
-        | History::Escalate(_)
-        | History::Move(_)
-        | History::Unload(_)
-        | History::FrameUnload(_)
-        | History::ElementUnload(_)
-        | History::Preload
-        | History::Inspect => return,
+        (
+            _,
+            History::StiffnessRamp(_)
+            | History::DampingSweep(_)
+            | History::Cycle(_)
+            | History::Impact(_)
+            | History::Shake(_)
+            | History::Escalate(_)
+            | History::Move(_)
+            | History::Unload(_)
+            | History::Preload
+            | History::Inspect,
+        ) => return,
     }
     common::fit_uncertainty::combine(results);
 }
@@ -343,23 +351,59 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     }
 }
 
+/// Command line: what `psd check --explain` prints of a procedure from a dry run, besides its motion. `by_tracking`: rows for the energy
+/// that tracking errors add to it or remove.
+pub fn predicted(
+    plan: &Plan,
+    kind: &ProcedureKind,
+    procedure: &ProcedureRecord,
+    by_tracking: &[Vec<String>],
+) -> Vec<Predicted> {
+    match (kind, &procedure.history) {
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::predicted::predicted(plan, impact, procedure, history, by_tracking)
+        }
+        (ProcedureKind::Shake(shake), History::Shake(history)) => {
+            shake::predicted::predicted(plan, shake, &procedure.name, history, by_tracking)
+        }
+        (_, History::Escalate(_)) => vec![Predicted::new(
+            format!("{}, worst impact", procedure.name),
+            by_tracking.to_vec(),
+        )],
+        (
+            _,
+            History::Impact(_)
+            | History::Shake(_)
+            | History::StiffnessRamp(_)
+            | History::DampingSweep(_)
+            | History::Cycle(_)
+            | History::Move(_)
+            | History::Unload(_)
+            | History::Preload
+            | History::Inspect,
+        ) => Vec::new(),
+    }
+}
+
 /// Report: a figure and its caption; None if nothing is recorded for it.
 pub(crate) fn chart(
     run: &Run<'_>,
     procedure: &ProcedureRecord,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
+    let planned = &run.plan.procedures.get(figure.procedure.0)?.kind;
     let (name, kind) = (&procedure.name, figure.kind);
-    match &procedure.history {
-        History::StiffnessRamp(history) => stiffness_ramp::figures::chart(name, history, kind),
-        History::DampingSweep(history) => damping_sweep::figures::chart(name, history, kind),
-        History::Impact(history) => impact::figures::chart(run, name, history, figure),
-        History::Shake(history) => shake::figures::chart(run, name, history, figure),
-        History::Cycle(history) => cycle::figures::chart(name, history, kind),
-        History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
-        History::FrameUnload(steps) => shake::figures::unloading_chart(run, name, steps, kind),
-        History::ElementUnload(steps) => shake::figures::unloaded_elements(run, name, steps, kind),
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => None,
+    match (planned, &procedure.history) {
+        (_, History::StiffnessRamp(history)) => stiffness_ramp::figures::chart(name, history, kind),
+        (_, History::DampingSweep(history)) => damping_sweep::figures::chart(name, history, kind),
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::figures::chart(run, impact, name, history, figure)
+        }
+        (_, History::Shake(history)) => shake::figures::chart(run, name, history, figure),
+        (_, History::Cycle(history)) => cycle::figures::chart(name, history, kind),
+        (_, History::Escalate(history)) => escalate::figures::chart(run, name, history, figure),
+        (_, History::Unload(history)) => unload::figures::chart(run, name, history, kind),
+        (_, History::Impact(_) | History::Move(_) | History::Preload | History::Inspect) => None,
     }
 }
 
@@ -374,8 +418,6 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
         | History::Escalate(_)
         | History::Move(_)
         | History::Unload(_)
-        | History::FrameUnload(_)
-        | History::ElementUnload(_)
         | History::Preload
         | History::Inspect => None,
     }
@@ -397,7 +439,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         }
         History::Shake(history) => {
             let number = |step: usize| history.steps[step].step;
-            let of_elements = shake::tables::of_elements(&name, &history.steps, number, assemblies);
+            let of_elements = frame::tables::of_elements(&name, &history.steps, number, assemblies);
             once(shake::tables::table(name, history, scaled))
                 .chain(of_elements)
                 .collect()
@@ -405,9 +447,7 @@ pub(crate) fn tables<'a>(plan: &Plan, procedure: &'a ProcedureRecord) -> Vec<Tab
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => escalate::tables::tables(name, history, scaled.as_ref()),
         History::Move(steps) => vec![move_to::tables::table(name, steps)],
-        History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
-        History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps, scaled)],
-        History::ElementUnload(steps) => vec![unload::tables::of_elements(name, steps, scaled)],
+        History::Unload(history) => vec![unload::tables::table(name, history, scaled)],
         History::Preload | History::Inspect => Vec::new(),
     };
     tables.extend(preload::tables::table(&procedure.name, &procedure.axial));
@@ -427,8 +467,8 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
         ProcedureBlock::Shake => {
-            let of_floors = shake::tables::columns(shake::tables::shake());
-            [of_floors, numeric(&shake::tables::elements())].concat()
+            let of_floors = frame::tables::columns(shake::tables::shake());
+            [of_floors, numeric(&frame::tables::elements())].concat()
         }
         ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Preload => preload::tables::columns(),
@@ -444,29 +484,35 @@ pub(crate) fn report(
     procedure: &ProcedureRecord,
     body: &mut Vec<Block>,
 ) {
-    match &procedure.history {
-        History::StiffnessRamp(history) => stiffness_ramp::report::report(history, body),
-        History::DampingSweep(history) => damping_sweep::report::report(history, body),
-        History::Impact(history) => match &history.frame {
-            Some(struck) => {
-                impact::report::storey::report(run, index, procedure, history, struck, body);
-            }
-            None => impact::report::report(run, index, procedure, history, body),
-        },
-        History::Cycle(history) => cycle::report::table(history, body),
-        History::Shake(history) => {
-            shake::report::shaken(run, index, procedure, history, body);
+    let Some(planned) = run.plan.procedures.get(index) else {
+        return;
+    };
+    match (&planned.kind, &procedure.history) {
+        (_, History::StiffnessRamp(history)) => stiffness_ramp::report::report(history, body),
+        (_, History::DampingSweep(history)) => damping_sweep::report::report(history, body),
+        (ProcedureKind::Impact(impact), History::Impact(history)) => {
+            impact::report::report(run, impact, procedure, history, body);
         }
-        History::Escalate(history) => {
-            escalate::report::table(run, index, procedure, history, body);
+        (_, History::Cycle(history)) => cycle::report::table(history, body),
+        (ProcedureKind::Shake(shake), History::Shake(history)) => {
+            shake::report::report(run, shake, procedure, history, body);
         }
-        History::FrameUnload(steps) => {
-            shake::report::unloaded(run, index, procedure, steps, body);
+        (ProcedureKind::Escalate(series), History::Escalate(history)) => {
+            escalate::report::table(run, &series.impact, procedure, history, body);
         }
-        History::ElementUnload(steps) => {
-            shake::report::unloaded_elements(run, procedure, steps, body);
+        (ProcedureKind::Unload(unload), History::Unload(history)) => {
+            unload::report::report(run, unload, procedure, history, body);
         }
-        History::Move(_) | History::Unload(_) | History::Preload | History::Inspect => {}
+        (
+            _,
+            History::Impact(_)
+            | History::Shake(_)
+            | History::Escalate(_)
+            | History::Unload(_)
+            | History::Move(_)
+            | History::Preload
+            | History::Inspect,
+        ) => {}
     }
 }
 
@@ -515,14 +561,7 @@ pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f6
         History::Shake(shake) => {
             common::reached::of_floors(shake.steps.iter().map(|step| &step.floors), give);
         }
-        History::Unload(steps) | History::FrameUnload(steps) => {
-            let steps = steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force, &[]));
-        }
-        History::ElementUnload(steps) => {
-            let steps = steps.iter();
-            steps.for_each(|step| give(&[], &[], &step.elements()));
-        }
+        History::Unload(history) => common::reached::of_unloading(history, give),
         History::Preload | History::Inspect => {}
     }
 }

@@ -307,9 +307,9 @@ pub trait Rig {
         Ok((self.read()?, None))
     }
 
-    /// This rig, if it is simulated, settles equally long after every move, and nothing records its calls: its guard then takes whole
-    /// steps in one call.
-    fn at_once(&mut self) -> Option<&mut VirtualRig> {
+    /// This rig, if it is simulated, settles equally long after every move, and no entry is logged for each of its calls: its guard then
+    /// takes whole steps in one call.
+    fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
         None
     }
 
@@ -436,6 +436,22 @@ pub trait Rig {
     fn line_statistics(&self) -> LineStatistics {
         LineStatistics::default()
     }
+}
+
+/// A rig that is [`Rig::at_once`].
+pub trait WholeSteps {
+    /// Moves to finite targets \[m\] at this speed of the fastest axis, above 0 and finite (\[m/s\]; None: the rig's own), settles, pauses
+    /// for so long \[s\] and reads: to propose, execute, pause and read, without an allocation.
+    ///
+    /// # Errors
+    /// The run log cannot take the target or the reading, or the reading is not a number.
+    fn step(
+        &mut self,
+        targets: &[f64],
+        speed: Option<f64>,
+        pause: f64,
+        reading: &mut Reading,
+    ) -> Result<(), UnfinishedStep>;
 }
 
 /// A traverse that was interrupted.

@@ -75,70 +75,49 @@ impl<'record> Inputs<'record> {
         self.recorded
     }
 
-    /// Any number.
-    pub(crate) fn number(
-        &mut self,
-        field: &'static str,
-        formula: &Formula,
-        dimension: Dimension,
-    ) -> Result<f64, Stop> {
-        self.estimate(field, formula, dimension, None)
+    /// A number in the range of its field.
+    pub(crate) fn number(&mut self, field: &Field, formula: &Formula) -> Result<f64, Stop> {
+        self.estimate(field, formula, None)
             .map(|estimate| estimate.value)
     }
 
-    /// A number above 0.
-    pub(crate) fn positive(
+    /// A number in the range of its field, with its uncertainty; `critical` \[s\] is for `time_step`.
+    pub(crate) fn estimate(
         &mut self,
-        field: &'static str,
+        field: &Field,
         formula: &Formula,
-        dimension: Dimension,
-    ) -> Result<f64, Stop> {
-        self.positive_estimate(field, formula, dimension, None)
+        critical: Option<f64>,
+    ) -> Result<Estimate, Stop> {
+        let estimate = self.evaluate(field.name, formula, dimension_of(field), critical)?;
+        in_range(field.name, estimate.value, field)?;
+        Ok(estimate)
+    }
+
+    /// A number that a measurement may bring outside of the range of its field.
+    pub(crate) fn unbounded(&mut self, field: &Field, formula: &Formula) -> Result<f64, Stop> {
+        self.evaluate(field.name, formula, dimension_of(field), None)
             .map(|estimate| estimate.value)
     }
 
-    /// A number of at least 0.
-    pub(crate) fn not_negative(
-        &mut self,
-        field: &'static str,
-        formula: &Formula,
-        dimension: Dimension,
-    ) -> Result<f64, Stop> {
-        match self.number(field, formula, dimension)? {
-            value if value >= 0.0 => Ok(value),
-            value => Err(Stop::bad_input(field, value, dimension, "at least 0")),
-        }
-    }
-
-    /// A number in the range of a field.
-    pub(crate) fn in_range(
+    /// A number in the range of a field that the record has under the name `input`.
+    pub(crate) fn named(
         &mut self,
         input: &'static str,
         formula: &Formula,
         field: &Field,
     ) -> Result<f64, Stop> {
-        let dimension = field.dimension().unwrap_or(Dimension::NUMBER);
-        let (value, range) = (self.number(input, formula, dimension)?, field.range);
-        if range.contains(value) {
-            return Ok(value);
-        }
-        let wanted = match (value > range.high, range.above) {
-            (true, _) => format!("at most {}", range.high),
-            (false, true) => format!("greater than {}", range.low),
-            (false, false) => format!("at least {}", range.low),
-        };
-        Err(Stop::bad_input(input, value, dimension, wanted))
+        let value = self
+            .evaluate(input, formula, dimension_of(field), None)?
+            .value;
+        in_range(input, value, field)?;
+        Ok(value)
     }
 
     /// Damping, or its ratio: at least 0. A measured value below 0 by no more than its expanded uncertainty is set to 0,
     /// with its uncertainty.
-    pub(crate) fn damping(
-        &mut self,
-        field: &'static str,
-        formula: &Formula,
-        dimension: Dimension,
-    ) -> Result<f64, Stop> {
-        let value = self.number(field, formula, dimension)? + self.lift;
+    pub(crate) fn damping(&mut self, field: &Field, formula: &Formula) -> Result<f64, Stop> {
+        let value = self.unbounded(field, formula)? + self.lift;
+        let (field, dimension) = (field.name, dimension_of(field));
         if value >= 0.0 {
             return Ok(value);
         }
@@ -171,36 +150,16 @@ impl<'record> Inputs<'record> {
         Ok(0.0)
     }
 
-    /// A number above 0 with its uncertainty; `critical` \[s\] is for `time_step`.
-    pub(crate) fn positive_estimate(
-        &mut self,
-        field: &'static str,
-        formula: &Formula,
-        dimension: Dimension,
-        critical: Option<f64>,
-    ) -> Result<Estimate, Stop> {
-        let estimate = self.estimate(field, formula, dimension, critical)?;
-        if estimate.value > 0.0 {
-            Ok(estimate)
-        } else {
-            Err(Stop::bad_input(
-                field,
-                estimate.value,
-                dimension,
-                "greater than 0",
-            ))
-        }
-    }
-
     /// Actuator speed above 0, if one is requested.
     pub(crate) fn speed(&mut self, formula: Option<&Formula>) -> Result<Option<f64>, Stop> {
         formula
-            .map(|formula| self.positive(SPEED.name, formula, Dimension::VELOCITY))
+            .map(|formula| self.number(&SPEED, formula))
             .transpose()
     }
 
     /// Every entry of a list. The record contains them as the commands of its steps.
-    pub(crate) fn list(&self, field: &'static str, formulas: &[Formula]) -> Result<Vec<f64>, Stop> {
+    pub(crate) fn list(&self, field: &Field, formulas: &[Formula]) -> Result<Vec<f64>, Stop> {
+        let field = field.name;
         let value = |formula: &Formula| {
             formula
                 .evaluate(self.results, None)
@@ -213,7 +172,7 @@ impl<'record> Inputs<'record> {
             .map_err(|error| Stop::NoInput { field, error })
     }
 
-    fn estimate(
+    fn evaluate(
         &mut self,
         field: &'static str,
         formula: &Formula,
@@ -226,4 +185,23 @@ impl<'record> Inputs<'record> {
         self.recorded.push((field, estimate, dimension));
         Ok(estimate)
     }
+}
+
+/// The dimension of a field of numbers.
+fn dimension_of(field: &Field) -> Dimension {
+    field.dimension().unwrap_or(Dimension::NUMBER)
+}
+
+/// Refuses a value outside of the range of a field; the message has the name `input`.
+fn in_range(input: &'static str, value: f64, field: &Field) -> Result<(), Stop> {
+    let range = field.range;
+    if range.contains(value) {
+        return Ok(());
+    }
+    let wanted = match (value > range.high, range.above) {
+        (true, _) => format!("at most {}", range.high),
+        (false, true) => format!("greater than {}", range.low),
+        (false, false) => format!("at least {}", range.low),
+    };
+    Err(Stop::bad_input(input, value, dimension_of(field), wanted))
 }

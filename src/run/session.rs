@@ -8,6 +8,7 @@ use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
 use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
+use psd_text::count::counted_in_words;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 
@@ -70,13 +71,8 @@ impl<'run> Session<'run> {
             )
         } else {
             rig.hold();
-            let degrees = |count| {
-                if count == 1 {
-                    "one degree of freedom".to_owned()
-                } else {
-                    format!("{count} degrees of freedom")
-                }
-            };
+            let degrees =
+                |count| counted_in_words(count, "degree of freedom", "degrees of freedom");
             Err(RigFault::Device(format!(
                 "these procedures move {}, but the rig has {axes}",
                 degrees(wanted)

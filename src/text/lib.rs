@@ -2,6 +2,7 @@
 //! their units. In: text. Out: text and data about it. Knows neither language nor plan.
 
 pub mod columns;
+pub mod count;
 pub mod diagnostic;
 pub mod digest;
 pub mod glyphs;

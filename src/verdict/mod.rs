@@ -124,11 +124,7 @@ pub enum Bound {
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let rule = plan.decision_rule;
     let results = Declared::of(plan, record);
-    let requirements: Vec<_> = plan
-        .requirements
-        .iter()
-        .map(|requirement| assess_requirement(requirement, rule, record, &results))
-        .collect();
+    let requirements = assess_requirements(&plan.requirements, rule, plan, record);
     let reproductions = plan.reproductions.iter();
     let reproductions = reproductions
         .map(|reproduction| reproduction::compare(reproduction, record, &results))
@@ -150,6 +146,21 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         requirements,
         reproductions,
     }
+}
+
+/// Assesses requirements under a decision rule against the record of a run of the plan.
+#[must_use]
+pub fn assess_requirements(
+    requirements: &[Requirement],
+    rule: DecisionRule,
+    plan: &Plan,
+    record: &Record,
+) -> Vec<RequirementOutcome> {
+    let results = Declared::of(plan, record);
+    let assessed = requirements.iter();
+    assessed
+        .map(|requirement| assess_requirement(requirement, rule, record, &results))
+        .collect()
 }
 
 /// `results` are those of the record, if their uncertainties are declared.

@@ -2,6 +2,8 @@
 //! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, each with
 //! what is known of its uncertainty.
 
+use std::borrow::Cow;
+
 use psd_plan::Plan;
 use psd_plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus};
 use psd_plan::uncertainty::{Contribution, Source};
@@ -30,7 +32,7 @@ impl Results for Declared<'_> {
         self.results.result(reference)
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         self.results.contributions(reference)
     }
 

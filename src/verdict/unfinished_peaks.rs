@@ -2,18 +2,19 @@
 //! series, and a condition that reads their results. Out: the reason why the condition is inconclusive, if further growth would change
 //! its verdict. It assesses no condition alone, and does not read the plan.
 
+use std::borrow::Cow;
+
 use super::ConditionOutcome;
 use super::assess_condition;
 use psd_plan::formula::{
     ProcedureId, ResultPart, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
-use psd_plan::procedures::escalate::block as series;
-use psd_plan::procedures::impact::block as schema;
-use psd_plan::procedures::shake::block as shake_schema;
+use psd_plan::procedures::{escalate, impact, shake};
 use psd_plan::record::{
-    EscalateHistory, FloorMotion, Floors, History, ImpactHistory, SeriesImpact, ShakeHistory,
+    EscalateHistory, FloorMotion, Floors, History, ImpactHistory, Integrated, SeriesImpact,
+    ShakeHistory,
 };
-use psd_plan::schema::ResultKind;
+use psd_plan::schema::{BlockKind, Peak, ResultKind};
 use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Condition, DecisionRule};
 
@@ -45,12 +46,29 @@ pub(super) fn growing(history: &History, result: &str, name: &str) -> Option<Str
 }
 
 fn growth(history: &History, result: &str, name: &str) -> Option<Growth> {
-    match history {
-        History::Impact(history) => of_impact(history, result, name),
-        History::Escalate(history) => of_row(history, result, name),
-        History::Shake(history) => of_shake(history, result, name),
-        _ => None,
+    match history.integrated()? {
+        Integrated::Impact(history) => {
+            of_impact(history, peak_of(&impact::block::BLOCK, result)?, name)
+        }
+        Integrated::Impacts(history) => {
+            of_series(history, escalate::block::BLOCK.result(result)?, name)
+        }
+        Integrated::GroundMotion(history) => {
+            peak_of(&shake::block::BLOCK, result)?;
+            of_shake(history, name)
+        }
     }
+}
+
+/// The peak on which a result of this block depends.
+fn peak_of(block: &BlockKind, result: &str) -> Option<Peak> {
+    block.result(result)?.peak
+}
+
+/// The peak on which a result depends that the condition of a series reads: the position after an impact, or a result of the impact.
+fn peak_read(result: &str) -> Option<Peak> {
+    let own = peak_of(&escalate::block::BLOCK, result);
+    own.or_else(|| peak_of(&impact::block::BLOCK, result))
 }
 
 /// The same for a condition on the last impact of a series. It reads the results of that impact as those of the procedure `own`.
@@ -63,7 +81,7 @@ pub(super) fn undecided_by(
 ) -> Option<String> {
     hangs_on(condition, rule, results, |reference| {
         (reference.procedure == own)
-            .then(|| of_own(impact, reference.name, "the impact"))
+            .then(|| of_impact(impact, peak_read(reference.name)?, "the impact"))
             .flatten()
     })
 }
@@ -141,7 +159,7 @@ impl Results for Grown<'_> {
         Some(found)
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         self.results.contributions(reference)
     }
 
@@ -162,9 +180,11 @@ impl Results for Grown<'_> {
     }
 }
 
-/// Growth of a result of an impact. A run that continues past a largest value has reached a peak, independent of later values.
-fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth> {
+/// Growth towards a peak of an impact. A run that continues past a largest value has reached a peak, independent of later values.
+fn of_impact(impact: &ImpactHistory, peak: Peak, name: &str) -> Option<Growth> {
     let frame = impact.frame.as_ref();
+    let ending = impact.ending;
+    let of = |peak: Peak| of_impact(impact, peak, name);
     let still = |what: &str, largest: &str| {
         format!("{what} when {name} ended: its largest {largest} is not a peak")
     };
@@ -181,73 +201,66 @@ fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth>
             entries: entries.to_vec(),
         })
     };
+    let moving = || {
+        let what = "the structure was still moving";
+        number(ending.still_rising, what, "displacement")
+    };
     // Until the striker has stopped, the largest force may still come, even if the structure moves back meanwhile.
-    let ending = impact.ending;
-    if ending.still_striking
-        && is(result, &PUSHED)
-        && !(is(result, &[schema::MAX_DISPLACEMENT]) && ending.still_rising)
-    {
+    let pushed = || {
         let what = if ending.touched {
             "the striker was still pushing"
         } else {
             "the striker had not touched the structure yet"
         };
-        return Some(Growth {
+        ending.still_striking.then(|| Growth {
             entries: (0..floors_of(impact).unwrap_or(1)).collect(),
             why: format!("{what} when {name} ended: the peak is not reached"),
-        });
-    }
-    if is(
-        result,
-        &[
-            schema::MAX_DISPLACEMENT,
-            schema::TIME_OF_MAX_DISPLACEMENT,
-            schema::ABSORBED_ENERGY,
-        ],
-    ) {
-        number(
-            ending.still_rising,
-            "the structure was still moving",
-            "displacement",
-        )
-    } else if is(result, &[schema::MAX_VELOCITY]) {
-        number(
-            ending.speeding_up,
-            "the velocity of the structure was still increasing",
-            "velocity",
-        )
-    } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
-        let what = "the contact force was still increasing";
-        number(ending.pushing_harder, what, "size")
-    } else if is(result, &[schema::MAX_BASE_SHEAR]) {
-        let what = "the base shear was still increasing";
-        let growing = frame.is_some_and(|frame| frame.growing.base_shear);
-        number(growing, what, "size")
-    } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
-        list(&frame?.growing.floors, "floor", "displacement")
-    } else if is(result, &[schema::MAX_DRIFT, schema::MAX_ELEMENT_FORCE]) {
+        })
+    };
+    let members = |force: Option<&str>| {
         let frame = frame?;
         let [member, drift] = words(frame.floors.first().map(|step| &step.floors));
-        let force = is(result, &[schema::MAX_ELEMENT_FORCE]);
-        let largest = if force { "force" } else { drift };
-        list(&frame.growing.storeys, member, largest)
-    } else {
-        None
+        list(&frame.growing.storeys, member, force.unwrap_or(drift))
+    };
+    match peak {
+        Peak::Displacement => moving().or_else(pushed),
+        Peak::InstantOfDisplacement => pushed().or_else(moving),
+        Peak::Velocity => {
+            let what = "the velocity of the structure was still increasing";
+            number(ending.speeding_up, what, "velocity")
+        }
+        Peak::ContactForce => {
+            let what = "the contact force was still increasing";
+            number(ending.pushing_harder, what, "size")
+        }
+        Peak::BaseShear => pushed().or_else(|| {
+            let growing = frame.is_some_and(|frame| frame.growing.base_shear);
+            number(growing, "the base shear was still increasing", "size")
+        }),
+        Peak::FloorDisplacement => {
+            pushed().or_else(|| list(&frame?.growing.floors, "floor", "displacement"))
+        }
+        Peak::Drift => pushed().or_else(|| members(None)),
+        Peak::ElementForce => pushed().or_else(|| members(Some("force"))),
+        // If the impact ended before its peak, its final position is not determined either.
+        Peak::PositionAfter => of(Peak::Displacement),
+        Peak::DriftAfter => {
+            let growth = of(Peak::LastImpact)?;
+            Some(Growth {
+                entries: (0..floors_of(impact)?).collect(),
+                ..growth
+            })
+        }
+        Peak::LastImpact => of(Peak::Displacement).or_else(|| of(Peak::Drift)),
     }
 }
 
-/// Growth of a result of a ground-motion test that a drift ended: every peak may have come later.
-fn of_shake(shake: &ShakeHistory, result: &str, name: &str) -> Option<Growth> {
+/// Growth towards the peaks of a ground-motion test that a drift ended: every peak may have come later.
+fn of_shake(shake: &ShakeHistory, name: &str) -> Option<Growth> {
     let number = shake.drift_reached? + 1;
-    let peaks = [
-        shake_schema::MAX_DISPLACEMENT,
-        shake_schema::MAX_DRIFT,
-        shake_schema::MAX_BASE_SHEAR,
-        shake_schema::MAX_ELEMENT_FORCE,
-    ];
     let last = &shake.steps.last()?.floors;
     let [member, drift] = words(Some(last));
-    is(result, &peaks).then(|| Growth {
+    Some(Growth {
         entries: (0..entries_of(last)).collect(),
         why: format!("the {drift} of {member} {number} ended {name}: the peak is not reached"),
     })
@@ -273,61 +286,21 @@ fn floors_of(impact: &ImpactHistory) -> Option<usize> {
     Some(entries_of(&last.floors))
 }
 
-/// Whether this is the name of one of these results.
-fn is(result: &str, kinds: &[ResultKind]) -> bool {
-    kinds.iter().any(|kind| kind.name == result)
-}
-
-/// Results that a moving striker can still increase.
-const PUSHED: [ResultKind; 7] = [
-    schema::MAX_DISPLACEMENT,
-    schema::TIME_OF_MAX_DISPLACEMENT,
-    schema::ABSORBED_ENERGY,
-    schema::MAX_BASE_SHEAR,
-    schema::FLOOR_DISPLACEMENT,
-    schema::MAX_DRIFT,
-    schema::MAX_ELEMENT_FORCE,
-];
-
-/// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not
-/// determined either.
-fn of_own(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth> {
-    let of = |kind: ResultKind| of_impact(impact, kind.name, name);
-    if is(
-        result,
-        &[series::RESIDUAL_DISPLACEMENT, series::FINAL_DISPLACEMENT],
-    ) {
-        of(schema::MAX_DISPLACEMENT)
-    } else if is(result, &[series::RESIDUAL_DRIFT, series::FINAL_DRIFT]) {
-        let growth = of(schema::MAX_DISPLACEMENT).or_else(|| of(schema::MAX_DRIFT))?;
-        Some(Growth {
-            entries: (0..floors_of(impact)?).collect(),
-            ..growth
-        })
-    } else {
-        of_impact(impact, result, name)
-    }
-}
-
 /// Growth of a result of an impact series: results that one impact leaves undetermined. If an inconclusive impact ended the series, this
 /// includes the last energy that passed.
-fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth> {
+fn of_series(history: &EscalateHistory, kind: &ResultKind, name: &str) -> Option<Growth> {
     let numbered_impacts = || history.impacts.iter().enumerate();
-    let of = |(index, impact): (usize, &SeriesImpact), own: ResultKind| {
-        of_own(
+    let of = |(index, impact): (usize, &SeriesImpact), peak: Peak| {
+        of_impact(
             &impact.history,
-            own.name,
+            peak,
             &format!("impact {} of {name}", index + 1),
         )
     };
-    let one = |growth: Growth| Growth {
-        entries: vec![0],
-        ..growth
-    };
     // A list with one entry per impact.
-    let by_impact = |own: ResultKind| {
+    let by_impact = |peak: Peak| {
         let found: Vec<(usize, Growth)> = numbered_impacts()
-            .filter_map(|(index, impact)| Some((index, of((index, impact), own)?)))
+            .filter_map(|(index, impact)| Some((index, of((index, impact), peak)?)))
             .collect();
         let why = found.first()?.1.why.clone();
         Some(Growth {
@@ -336,9 +309,9 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         })
     };
     // A list with one entry per storey.
-    let by_storey = |own: ResultKind| {
+    let by_storey = |peak: Peak| {
         let found: Vec<Growth> = numbered_impacts()
-            .filter_map(|impact| of(impact, own))
+            .filter_map(|impact| of(impact, peak))
             .collect();
         let why = found.first()?.why.clone();
         let mut entries: Vec<usize> = found
@@ -349,48 +322,30 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         entries.dedup();
         Some(Growth { entries, why })
     };
-    if is(
-        result,
-        &[series::LAST_PASSED_ENERGY, series::PASSED, series::IMPACTS],
-    ) {
-        let (index, impact) = numbered_impacts()
-            .next_back()
-            .filter(|(_, impact)| impact.held.is_none())?;
-        let why = of((index, impact), schema::MAX_DISPLACEMENT)
-            .or_else(|| of((index, impact), schema::MAX_DRIFT))
-            .map(|growth| growth.why);
-        let reason = why.map_or_else(String::new, |why| format!(": {why}"));
-        return Some(Growth {
+    match (kind.peak, kind.made_of) {
+        (Some(Peak::LastImpact), _) => {
+            let (index, impact) = numbered_impacts()
+                .next_back()
+                .filter(|(_, impact)| impact.held.is_none())?;
+            let why = of((index, impact), Peak::LastImpact).map(|growth| growth.why);
+            let reason = why.map_or_else(String::new, |why| format!(": {why}"));
+            Some(Growth {
+                entries: vec![0],
+                why: format!(
+                    "{name} ended with impact {}, which is inconclusive{reason}",
+                    index + 1
+                ),
+            })
+        }
+        (Some(Peak::PositionAfter), _) if kind.list => by_impact(Peak::PositionAfter),
+        // Otherwise a result of the last impact alone.
+        (Some(peak), _) => of(numbered_impacts().next_back()?, peak),
+        (None, Some(of_impact)) if of_impact.list => by_storey(of_impact.peak?),
+        (None, Some(of_impact)) if kind.list => by_impact(of_impact.peak?),
+        (None, Some(of_impact)) => by_impact(of_impact.peak?).map(|growth| Growth {
             entries: vec![0],
-            why: format!(
-                "{name} ended with impact {}, which is inconclusive{reason}",
-                index + 1
-            ),
-        });
-    }
-    // The results of the last impact alone.
-    let of_last = [
-        series::RESIDUAL_DISPLACEMENT,
-        series::RESIDUAL_DRIFT,
-        series::FINAL_DISPLACEMENT,
-        series::FINAL_DRIFT,
-    ];
-    if let Some(kind) = of_last.into_iter().find(|kind| kind.name == result) {
-        return of(numbered_impacts().next_back()?, kind);
-    }
-    if is(
-        result,
-        &[series::RESIDUAL_DISPLACEMENTS, series::FINAL_DISPLACEMENTS],
-    ) {
-        return by_impact(series::RESIDUAL_DISPLACEMENT);
-    }
-    let kind = series::BLOCK.result(result)?;
-    let of_impact = *kind.made_of?;
-    if of_impact.list {
-        by_storey(of_impact)
-    } else if kind.list {
-        by_impact(of_impact)
-    } else {
-        by_impact(of_impact).map(one)
+            ..growth
+        }),
+        (None, None) => None,
     }
 }

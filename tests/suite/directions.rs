@@ -39,12 +39,7 @@ const DRIVERS: &[&str] = &[
 ];
 
 /// Files, besides the dispatch file, that still distinguish procedures or histories. The list may only shrink.
-const DISTINGUISHES_PROCEDURES: &[&str] = &[
-    "cli/commands/explain_plan/mod.rs",
-    "run/check_run.rs",
-    "run/replay/compatibility.rs",
-    "verdict/unfinished_peaks.rs",
-];
+const DISTINGUISHES_PROCEDURES: &[&str] = &["run/check_run.rs"];
 
 fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))

@@ -171,7 +171,10 @@ fn terms_of_the_glossary_are_in_alphabetical_order() {
         .skip(1)
         .filter_map(|line| line.split('|').nth(1))
         .map(|term| {
-            let term = term.to_lowercase().replace('α', "alpha").replace('δ', "delta");
+            let term = term
+                .to_lowercase()
+                .replace('α', "alpha")
+                .replace('δ', "delta");
             term.chars()
                 .filter(|letter| letter.is_ascii_lowercase() || *letter == ' ')
                 .collect::<String>()

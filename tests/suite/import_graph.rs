@@ -24,6 +24,8 @@ struct Module {
     imported: BTreeMap<String, Path>,
     /// The same for every `pub use`, which re-exports the name.
     given_on: BTreeMap<String, Path>,
+    /// The modules whose names it all re-exports: `pub use names::*`.
+    given_on_whole: Vec<Path>,
 }
 
 impl ImportGraph {
@@ -64,16 +66,34 @@ impl ImportGraph {
                 .find(|depth| self.files.contains_key(&path[..*depth]))?;
             let module = &self.files[&path[..depth]];
             let name = path.get(depth)?;
-            let Some(meant) = module.given_on.get(name) else {
+            let own = module
+                .given_on
+                .get(name)
+                .map(|meant| (path[..depth].to_vec(), meant));
+            let Some((from, meant)) = own.or_else(|| self.in_a_glob(&path[..depth], name)) else {
                 return Some(module);
             };
-            let Some(mut next) = self.absolute(&path[..depth], meant) else {
+            let Some(mut next) = self.absolute(&from, meant) else {
                 return Some(module);
             };
             next.extend_from_slice(&path[depth + 1..]);
             path = next;
         }
         None
+    }
+
+    /// The name in one of the modules that the module `here` re-exports whole: the module of the file, and what the name means there.
+    fn in_a_glob(&self, here: &[String], name: &str) -> Option<(Path, &Path)> {
+        let mut globs = self.files.get(here)?.given_on_whole.iter();
+        globs.find_map(|glob| {
+            let mut from = self.absolute(here, glob)?;
+            // A module inside of a file.
+            while !self.files.contains_key(&from) {
+                from.pop()?;
+            }
+            let meant = self.files[&from].given_on.get(name)?;
+            Some((from, meant))
+        })
     }
 
     /// What `crate` means in the module `here`: the root of its own crate.
@@ -182,6 +202,7 @@ fn read(file: &SourceText) -> Module {
         paths: BTreeSet::new(),
         imported: BTreeMap::new(),
         given_on: BTreeMap::new(),
+        given_on_whole: Vec::new(),
     };
     let mut rest = String::new();
     for statement in code.split_inclusive(';') {
@@ -192,7 +213,9 @@ fn read(file: &SourceText) -> Module {
         rest.push_str(before);
         let given_on = before.trim_end().ends_with("pub") || before.trim_end().ends_with(')');
         for (path, name) in leaves(tree) {
-            if given_on {
+            if given_on && tree.trim_end().ends_with("::*") {
+                module.given_on_whole.push(path.clone());
+            } else if given_on {
                 module.given_on.insert(name.clone(), path.clone());
             } else {
                 module.paths.insert(path.clone());

@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use crate::check::{Options, ParsedPlan};
+use crate::check::binding::{Binder, BoundInputs};
+use crate::check::{LoadError, Options, ParsedPlan};
 use psd_language::codes::{E214, E301, E401, E406, E407};
 use psd_plan::Plan;
 use psd_text::diagnostic::Code;
@@ -138,6 +139,89 @@ fn files_are_read_once_however_often_parameters_are_bound() {
         assert_eq!(plan.files.len(), 2);
     }
     assert_eq!(count.get(), 1);
+}
+
+/// Binds rows of numbers one after the other, and each alone: the plans and the errors are the same. Gives the number of valid plans.
+fn bound_in_turn(parsed: &ParsedPlan, inputs: &[(&str, Dimension)], rows: &[&[f64]]) -> usize {
+    let known = BoundInputs::new(parsed, inputs.iter().copied());
+    let mut binder = Binder::new(parsed, &known);
+    let mut valid = 0;
+    for row in rows {
+        let named = inputs.iter().zip(*row);
+        let values = named.map(|((name, dimension), value)| (*name, *value, *dimension));
+        let alone = parsed.bind(&bound(&values.collect::<Vec<_>>()));
+        let alone = alone.map(|mut plan| {
+            plan.settings = parsed.bind(&BTreeMap::new()).unwrap().settings;
+            format!("{plan:#?}")
+        });
+        let in_turn = binder.bind(row).map(|plan| format!("{plan:#?}"));
+        valid += usize::from(in_turn.is_ok());
+        assert_eq!(in_turn, alone, "{inputs:?}: {row:?}");
+    }
+    valid
+}
+
+#[test]
+fn a_binding_does_not_depend_on_the_one_before() {
+    let mass = ("mass", Dimension::MASS);
+    let velocity = ("velocity", Dimension::VELOCITY);
+    let scale = ("scale", Dimension::NUMBER);
+    let parsed = parsed(&[]);
+    // A mass of 0.5 kg is outside its bounds, and a striker does not move backwards.
+    let count =
+        |inputs: &[(&str, Dimension)], rows: &[&[f64]]| bound_in_turn(&parsed, inputs, rows);
+    assert_eq!(count(&[mass], &[&[5.0], &[6.0], &[0.5], &[5.0]]), 3);
+    assert_eq!(count(&[velocity], &[&[-1.0], &[2.0], &[3.0]]), 2);
+    assert_eq!(count(&[scale], &[&[0.5], &[2.0]]), 2);
+    let rows: [&[f64]; 4] = [
+        &[5.0, 2.0, 0.5],
+        &[5.0, -1.0, 0.5],
+        &[6.0, 1.0, 0.7],
+        &[5.0, 2.0, 0.5],
+    ];
+    assert_eq!(count(&[mass, velocity, scale], &rows), 3);
+    let (fields, _) = parsed_fields(&[]);
+    let inputs = VALUES.map(|(name, _, dimension)| (name, dimension));
+    let numbers = VALUES.map(|(_, value, _)| value);
+    for (number, input) in inputs.iter().enumerate() {
+        let rows: [&[f64]; 3] = [&[numbers[number]], &[-1.0], &[0.99 * numbers[number]]];
+        assert!(bound_in_turn(&fields, &[*input], &rows) >= 2, "{input:?}");
+    }
+}
+
+/// The axial load of the column of an example.
+const AXIAL: (&str, Dimension, f64) = ("vertical.force", Dimension::FORCE, 262.5e3);
+
+/// Each number that an example names, and an axial load, which the specimen contains afterwards.
+#[test]
+fn every_example_is_bound_in_turn_as_alone() {
+    let loader = |path: &str| {
+        std::fs::read_to_string(format!("../plans/{path}")).map_err(|_| LoadError::NotFound)
+    };
+    let mut valid = 0;
+    for entry in std::fs::read_dir("../plans").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "psd") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut parsed = ParsedPlan::parse("plan.psd", &text, &loader, &Options::default());
+        let Some(plan) = parsed.check(&loader).plan else {
+            continue;
+        };
+        let of_parameter = plan.parameters.iter();
+        let mut inputs: Vec<(&str, Dimension, f64)> = of_parameter
+            .map(|it| (it.name.as_str(), it.dimension, it.value))
+            .collect();
+        if path.ends_with("column_axial_load.psd") {
+            inputs.push(AXIAL);
+        }
+        for (name, dimension, value) in inputs {
+            let rows: [&[f64]; 3] = [&[1.01 * value], &[f64::NAN], &[0.99 * value]];
+            valid += bound_in_turn(&parsed, &[(name, dimension)], &rows);
+        }
+    }
+    assert!(valid >= 16, "{valid}");
 }
 
 /// A plan whose numbers are in blocks and in options of them.

@@ -95,6 +95,8 @@ fn once(
     files: &mut Vec<PathBuf>,
 ) -> Result<Exit, Failure> {
     let mut exit = Exit::Met;
+    // The document for an editor. A reader of text has had the same already.
+    let is_json = arguments.format == Format::Json;
     let mut diagnostics = Vec::new();
     let mut predictions = Vec::new();
     let named = named(&arguments.plans, Depth::Below)?;
@@ -113,7 +115,9 @@ fn once(
         match checked {
             Ok(checked) => {
                 exit = exit.max(one(path, &checked, arguments, settings, &mut prediction)?);
-                diagnostics.extend(plan_file::diagnostics(&checked, path));
+                if is_json {
+                    diagnostics.extend(plan_file::diagnostics(&checked, path));
+                }
             }
             // A file that cannot be read does not stop the check of the others.
             Err(failure) => {
@@ -128,7 +132,7 @@ fn once(
         }
         predictions.push(object!({ "plan": path.display().to_string(), "prediction": prediction }));
     }
-    if arguments.format == Format::Json {
+    if is_json {
         print_result(&if arguments.explain {
             json::printed_with_predictions(&diagnostics, predictions)
         } else {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::words::Words;
 use crate::golden::finding::Finding;
 use crate::golden::tested::{Accepted, Outcome, Report, Tested};
+use psd_text::count::counted;
 
 /// Differences shown for one part of a plan's results; the JSON report has all.
 const SHOWN: usize = 7;
@@ -124,12 +125,12 @@ pub fn closing(report: &Report) -> String {
             )
         })
         .count();
-    let plans = if all == 1 { "plan" } else { "plans" };
+    let plans = counted(all, "plan", "plans");
     let _ = match (all - good, accepted) {
-        (0, 0) => writeln!(text, "{all} {plans} as accepted"),
+        (0, 0) => writeln!(text, "{plans} as accepted"),
         (0, _) => writeln!(
             text,
-            "{all} {plans}, {accepted} accepted; review the changes before you commit them"
+            "{plans}, {accepted} accepted; review the changes before you commit them"
         ),
         (bad, _) => writeln!(text, "{bad} of {all} failed"),
     };

@@ -14,13 +14,20 @@ use psd_text::units::{Dimension, Quantity};
 
 use super::Loader;
 use super::expressions::data_file::DataFile;
-use super::scope::{Overrides, Scope};
+use super::scope::{BoundInput, Overrides, Scope};
 
 /// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Node {
     Value(usize),
     Entry { block: usize, entry: usize },
+}
+
+/// What was checked, and whether a value that is bound from outside the plan reaches it.
+#[derive(Clone, Debug)]
+pub struct Traced<T> {
+    pub value: T,
+    pub is_bound: bool,
 }
 
 /// One number or a list.
@@ -86,12 +93,12 @@ pub struct Checker<'a> {
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
     /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
-    pub frames: BTreeMap<usize, Option<Rc<Frame>>>,
+    pub frames: BTreeMap<usize, Traced<Option<Rc<Frame>>>>,
     pub diagnostics: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
     /// Cross-sections by the span of their shapes; None of one with an error.
-    pub sections: BTreeMap<Span, Option<Section>>,
+    pub sections: BTreeMap<Span, Traced<Option<Section>>>,
     /// Lines that could not be parsed: unknown names may be declared there.
     pub unread: Vec<Span>,
     /// Every word of those lines.
@@ -100,7 +107,7 @@ pub struct Checker<'a> {
     reported: BTreeMap<usize, Vec<Diagnostic>>,
     /// Spans that one diagnostic explains in full.
     pub explained: Vec<Span>,
-    pub known: BTreeMap<Node, Option<Typed>>,
+    known: BTreeMap<Node, Traced<Option<Typed>>>,
     pub used: BTreeSet<usize>,
     /// The blocks that a field or an expression names.
     pub used_blocks: BTreeSet<usize>,
@@ -112,8 +119,12 @@ pub struct Checker<'a> {
     pub real_rig: Option<usize>,
     /// Values of fields that are given from outside the plan.
     pub overrides: Overrides<'a>,
+    /// The values that are bound from outside, by their inputs, SI.
+    pub bound: &'a [f64],
+    /// Whether one of them was read since [`Self::traced`] began.
+    reads_bound: bool,
     /// Results that the plan reads as these numbers.
-    pub results: Vec<(ResultReference, Typed)>,
+    pub results: Vec<(ResultReference, Traced<Typed>)>,
     /// Whether the studies of the plan are about to be run.
     pub for_studies: bool,
     /// Ends of the inputs of studies, at which the plan must be valid.
@@ -226,6 +237,8 @@ impl<'a> Checker<'a> {
             list_entries_read: Vec::new(),
             real_rig: None,
             overrides: Overrides::new(),
+            bound: &[],
+            reads_bound: false,
             results: Vec::new(),
             for_studies: false,
             ends: Vec::new(),
@@ -257,13 +270,37 @@ impl<'a> Checker<'a> {
         work: impl FnOnce(&mut Self) -> Option<Typed>,
     ) -> Option<Typed> {
         if let Some(known) = self.known.get(&node) {
-            return known.clone();
+            self.reads_bound |= known.is_bound;
+            return known.value.clone();
         }
         self.guarded(node, requested_at, |checker| {
-            let value = work(checker).and_then(|typed| checker.of_bounded_size(typed));
-            checker.known.insert(node, value.clone());
+            let traced = checker
+                .traced(|checker| work(checker).and_then(|typed| checker.of_bounded_size(typed)));
+            let value = traced.value.clone();
+            checker.known.insert(node, traced);
             value
         })
+    }
+
+    /// Does `work`, and finds whether it reads a value that is bound from outside the plan.
+    pub fn traced<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> Traced<T> {
+        let before = std::mem::replace(&mut self.reads_bound, false);
+        let value = work(self);
+        let is_bound = self.reads_bound;
+        self.reads_bound |= before;
+        Traced { value, is_bound }
+    }
+
+    /// What was traced, which is now read again.
+    pub fn read_again<T: Clone>(&mut self, traced: &Traced<T>) -> T {
+        self.reads_bound |= traced.is_bound;
+        traced.value.clone()
+    }
+
+    /// The value that is bound to an input.
+    pub fn bound_value(&mut self, input: BoundInput) -> Quantity {
+        self.reads_bound = true;
+        Quantity::new(self.bound[input.number], input.dimension)
     }
 
     fn of_bounded_size(&mut self, typed: Typed) -> Option<Typed> {
@@ -289,7 +326,7 @@ impl<'a> Checker<'a> {
                 .map(|node| self.describe(*node))
                 .collect();
             for node in self.stack[start..].iter().copied() {
-                self.known.insert(node, None);
+                self.known.insert(node, Traced::unknown());
             }
             return self.fail(CircularDefinition {
                 cycle: &cycle,
@@ -304,7 +341,7 @@ impl<'a> Checker<'a> {
                     most: DEEPEST_VALUES,
                 });
             }
-            self.known.insert(node, None);
+            self.known.insert(node, Traced::unknown());
             return None;
         }
         self.stack.push(node);
@@ -357,6 +394,16 @@ impl<'a> Checker<'a> {
                     .map_or_else(|| declared.kind.words(), |name| name.node.clone());
                 (format!("{owner}.{}", key.node), key.span)
             }
+        }
+    }
+}
+
+impl<T> Traced<Option<T>> {
+    /// Something with an error.
+    pub const fn unknown() -> Self {
+        Self {
+            value: None,
+            is_bound: false,
         }
     }
 }

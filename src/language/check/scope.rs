@@ -12,7 +12,7 @@ use psd_plan::schema::{self, BLOCKS, BlockKind, ITEM_WORDS, Kind, Naming};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{FileId, Span, Spanned};
 use psd_text::suggest::with_article;
-use psd_text::units::Quantity;
+use psd_text::units::Dimension;
 
 /// A block of a kind that this version knows.
 pub struct DeclaredBlock<'a> {
@@ -47,8 +47,16 @@ pub struct DeclaredValue<'a> {
 pub enum Setting {
     /// An expression, as given by `--set`.
     Written(Expr),
-    /// A number in SI units, bound without any text.
-    Bound(Quantity),
+    /// A number that is bound without any text.
+    Bound(BoundInput),
+}
+
+/// An input of the plan to which numbers are bound, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundInput {
+    /// Its number among the inputs.
+    pub number: usize,
+    pub dimension: Dimension,
 }
 
 /// Values given from outside the plan for fields, by the span of the value that each replaces, with the name of the input.

@@ -2,16 +2,13 @@
 
 use crate::syntax::ast::Ident;
 use psd_plan::schema::{BlockKind, SYNONYMS};
+use psd_text::count::counted_in_words;
 use psd_text::suggest::with_article;
 use psd_text::units::{Dimension, display};
 
 /// `one axis`, `3 axes`
 pub fn axes_of(count: usize) -> String {
-    if count == 1 {
-        "one axis".to_owned()
-    } else {
-        format!("{count} axes")
-    }
+    counted_in_words(count, "axis", "axes")
 }
 
 /// The name of a block in a message: ``specimen `beam` ``.

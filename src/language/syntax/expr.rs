@@ -1,30 +1,53 @@
-//! Pairs of the grammar → expressions. A Pratt parser handles the precedence below ranges: `+ -`, `* /`, unary `-`, `^`
-//! (to the right), then `.` and `[0]`.
+//! Pairs of the grammar → expressions. An expression is a flat list of operands and of what joins them, in an order that the grammar has
+//! checked. Precedence rises from `and` over comparisons, ranges, `+ -`, `* /`, unary `-` and `^` (to the right) to `.` and `[0]`.
+//! A function returns None only for pairs that are not of the grammar.
 
-use std::sync::LazyLock;
+use std::iter::Peekable;
 
-use pest::{
-    iterators::Pair,
-    pratt_parser::{Assoc, Op, PrattParser},
-};
+use pest::iterators::{Pair, Pairs};
 
 use super::{
     ast::{Argument, BinaryOperator, Expr, ExprKind, UnitToken},
     grammar::Rule,
     limits,
-    lower::{Lowering, unescape},
+    lower::Lowering,
     messages,
 };
 use psd_text::source::{Span, Spanned};
 
-static PRATT: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
-    PrattParser::new()
-        .op(Op::infix(Rule::plus, Assoc::Left) | Op::infix(Rule::minus, Assoc::Left))
-        .op(Op::infix(Rule::times, Assoc::Left) | Op::infix(Rule::divided, Assoc::Left))
-        .op(Op::prefix(Rule::negate))
-        .op(Op::infix(Rule::power, Assoc::Right))
-        .op(Op::postfix(Rule::field) | Op::postfix(Rule::index))
-});
+/// The parts of one expression that are not read yet.
+type Parts<'i> = Peekable<Pairs<'i, Rule>>;
+
+/// The precedence of a unary minus.
+const NEGATION: u8 = 3;
+
+/// The precedence of an infix operator, and the lowest precedence of an operator within its right operand.
+const fn precedence(operator: BinaryOperator) -> (u8, u8) {
+    match operator {
+        BinaryOperator::Multiply | BinaryOperator::Divide => (2, 3),
+        BinaryOperator::Power => (4, 4),
+        _ => (1, 2),
+    }
+}
+
+/// What a sum consists of: everything between the words, comparisons and points that join sums.
+const fn is_of_sum(rule: Rule) -> bool {
+    is_operator(rule)
+        || matches!(
+            rule,
+            Rule::number
+                | Rule::unit
+                | Rule::variable
+                | Rule::arguments
+                | Rule::text
+                | Rule::list
+                | Rule::parenthesised
+        )
+}
+
+const fn is_operator(rule: Rule) -> bool {
+    matches!(rule, Rule::infix | Rule::negate | Rule::field | Rule::index)
+}
 
 fn binary(operator: Spanned<BinaryOperator>, left: Expr, right: Expr) -> Expr {
     let span = left.span.to(right.span);
@@ -56,28 +79,29 @@ fn operator(text: &str) -> BinaryOperator {
     }
 }
 
-impl Lowering {
+impl Lowering<'_> {
     fn operator(&self, pair: &Pair<'_, Rule>) -> Spanned<BinaryOperator> {
-        Spanned::new(operator(pair.as_str()), self.span(pair))
+        Spanned::new(operator(self.written(pair)), self.span(pair))
     }
 
     /// `depth` counts the operators and brackets around this expression.
     #[must_use]
-    pub fn expression(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
+    pub fn expression(&self, pair: Pair<'_, Rule>, depth: usize) -> Option<Expr> {
         let span = self.span(&pair);
-        let mut parts = pair.into_inner();
-        let depth = depth + parts.clone().count() / 2 + 1;
+        let parts = pair.into_inner();
+        let ands = parts
+            .clone()
+            .filter(|part| part.as_rule() == Rule::and_word);
+        let depth = depth + ands.count() + 1;
         if depth > limits::OPERATORS {
-            return self.too_many(span);
+            return Some(self.too_many(span));
         }
-        let Some(first) = parts.next() else {
-            return Self::faulty(span);
-        };
-        let mut result = self.comparison(first, depth);
-        while let (Some(and), Some(right)) = (parts.next(), parts.next()) {
-            result = binary(self.operator(&and), result, self.comparison(right, depth));
+        let parts = &mut parts.peekable();
+        let mut result = self.comparison(parts, depth)?;
+        while let Some(and) = parts.next() {
+            result = binary(self.operator(&and), result, self.comparison(parts, depth)?);
         }
-        result
+        Some(result)
     }
 
     fn too_many(&self, span: Span) -> Expr {
@@ -85,182 +109,150 @@ impl Lowering {
         Self::faulty(span)
     }
 
-    fn comparison(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let span = self.span(&pair);
-        let mut parts = pair.into_inner();
-        let Some(first) = parts.next() else {
-            return Self::faulty(span);
-        };
-        if first.as_rule() == Rule::stepped {
-            return self.stepped(first, depth);
-        }
-        let value = self.range(first, depth);
-        let Some(sign) = parts.next() else {
-            return value;
-        };
-        let Some(next) = parts.next() else {
-            return value;
-        };
-        if sign.as_rule() == Rule::compare {
-            return binary(self.operator(&sign), value, self.range(next, depth));
-        }
-        let tolerance = self.sum(next, depth);
-        let Some(target) = parts.find(|part| part.as_rule() == Rule::sum) else {
-            return value;
-        };
-        let target = self.sum(target, depth);
-        let span = value.span.to(target.span);
-        let (value, tolerance, target) = (Box::new(value), Box::new(tolerance), Box::new(target));
-        Expr {
-            span,
-            kind: ExprKind::Within {
-                value,
-                tolerance,
-                target,
-            },
-        }
-    }
-
-    /// `hammer.velocity in 0.4 .. 1.6 step 0.1 m/s`
-    fn stepped(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let whole = self.span(&pair);
-        let (mut input, mut values) = (None, None);
-        for part in pair.into_inner() {
-            match (part.as_rule(), input.take()) {
-                (Rule::variable, _) => {
-                    let span = self.span(&part);
-                    let kind = ExprKind::Name(part.as_str().to_owned());
-                    input = Some(Expr { span, kind });
-                }
-                (Rule::field, Some(base)) => input = Some(self.postfix(base, part, depth)),
-                (Rule::range, kept) => {
-                    values = Some(self.range(part, depth));
-                    input = kept;
-                }
-                (_, kept) => input = kept,
-            }
-        }
-        let (Some(input), Some(values)) = (input, values) else {
-            return Self::faulty(whole);
-        };
-        let span = input.span.to(values.span);
-        let (input, values) = (Box::new(input), Box::new(values));
-        let kind = ExprKind::Stepped { input, values };
-        Expr { span, kind }
-    }
-
-    #[must_use]
-    pub fn range(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let span = self.span(&pair);
-        let mut sums = pair
-            .into_inner()
-            .filter(|part| part.as_rule() == Rule::sum)
-            .map(|part| self.sum(part, depth));
-        let Some(start) = sums.next() else {
-            return Self::faulty(span);
-        };
-        let Some(end) = sums.next() else { return start };
-        let step = sums.next();
-        let span = start.span.to(step.as_ref().unwrap_or(&end).span);
-        Expr {
-            span,
-            kind: ExprKind::Range {
-                start: Box::new(start),
-                end: Box::new(end),
-                step: step.map(Box::new),
-            },
-        }
-    }
-
-    fn sum(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let span = self.span(&pair);
-        let parts = pair.into_inner();
-        let is_operand = |rule| {
+    fn comparison(&self, parts: &mut Parts<'_>, depth: usize) -> Option<Expr> {
+        let value = self.range(parts, depth)?;
+        let compares = |part: &Pair<'_, Rule>| {
             matches!(
-                rule,
-                Rule::quantity | Rule::text | Rule::list | Rule::parenthesised | Rule::named
+                part.as_rule(),
+                Rule::compare | Rule::within_word | Rule::in_word
             )
         };
-        let depth = depth
-            + parts
-                .clone()
-                .filter(|part| !is_operand(part.as_rule()))
-                .count();
-        if depth > limits::OPERATORS {
-            return self.too_many(span);
+        let Some(sign) = parts.next_if(compares) else {
+            return Some(value);
+        };
+        match sign.as_rule() {
+            Rule::compare => {
+                let right = self.range(parts, depth)?;
+                Some(binary(self.operator(&sign), value, right))
+            }
+            // `hammer.velocity in 0.4 .. 1.6 step 0.1 m/s`
+            Rule::in_word => {
+                let values = self.range(parts, depth)?;
+                let span = value.span.to(values.span);
+                let (input, values) = (Box::new(value), Box::new(values));
+                let kind = ExprKind::Stepped { input, values };
+                Some(Expr { span, kind })
+            }
+            _ => {
+                let tolerance = self.sum(parts, depth)?;
+                parts.next_if(|part| part.as_rule() == Rule::of_word)?;
+                let target = self.sum(parts, depth)?;
+                let span = value.span.to(target.span);
+                let kind = ExprKind::Within {
+                    value: Box::new(value),
+                    tolerance: Box::new(tolerance),
+                    target: Box::new(target),
+                };
+                Some(Expr { span, kind })
+            }
         }
-        PRATT
-            .map_primary(|operand| self.operand(operand, depth))
-            .map_prefix(|minus, value| Expr {
-                span: self.span(&minus).to(value.span),
-                kind: ExprKind::Negate(Box::new(value)),
-            })
-            .map_postfix(|base, postfix| self.postfix(base, postfix, depth))
-            .map_infix(|left, sign, right| binary(self.operator(&sign), left, right))
-            .parse(parts)
     }
 
-    fn postfix(&self, base: Expr, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let mut span = base.span;
-        let (mut name, mut arguments, mut index) = (None, None, None);
-        for part in pair.into_inner() {
+    pub fn range(&self, parts: &mut Parts<'_>, depth: usize) -> Option<Expr> {
+        let start = self.sum(parts, depth)?;
+        if parts.next_if(|part| part.as_rule() == Rule::dots).is_none() {
+            return Some(start);
+        }
+        let end = self.sum(parts, depth)?;
+        let mut span = start.span.to(end.span);
+        let mut step = None;
+        if parts
+            .next_if(|part| part.as_rule() == Rule::step_word)
+            .is_some()
+        {
+            let value = self.sum(parts, depth)?;
+            span = span.to(value.span);
+            step = Some(Box::new(value));
+        }
+        let kind = ExprKind::Range {
+            start: Box::new(start),
+            end: Box::new(end),
+            step,
+        };
+        Some(Expr { span, kind })
+    }
+
+    fn sum(&self, parts: &mut Parts<'_>, depth: usize) -> Option<Expr> {
+        let of_sum = parts.clone().take_while(|part| is_of_sum(part.as_rule()));
+        let operators = of_sum.filter(|part| is_operator(part.as_rule()));
+        let depth = depth + operators.count();
+        if depth <= limits::OPERATORS {
+            return self.joined(parts, 0, depth);
+        }
+        let mut span = self.span(parts.peek()?);
+        while let Some(part) = parts.next_if(|part| is_of_sum(part.as_rule())) {
             span = span.to(self.span(&part));
-            match part.as_rule() {
-                Rule::name => name = Some(self.ident(&part)),
-                Rule::arguments => arguments = Some(self.arguments(part, depth)),
-                Rule::expression => index = Some(self.expression(part, depth)),
-                _ => {}
-            }
         }
-        let base = Box::new(base);
-        let kind = match (name, arguments, index) {
-            (Some(name), None, _) => ExprKind::Field { base, name },
-            (Some(name), Some(arguments), _) => ExprKind::Member {
-                base,
-                name,
-                arguments,
-            },
-            (None, _, Some(index)) => ExprKind::Index {
-                base,
-                index: Box::new(index),
-            },
-            (None, _, None) => ExprKind::Faulty,
-        };
-        Expr { span, kind }
+        Some(self.too_many(span))
     }
 
-    fn operand(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let span = self.span(&pair);
-        match pair.as_rule() {
-            Rule::quantity => self.quantity(pair),
-            Rule::text => Expr {
-                span,
-                kind: ExprKind::Text(unescape(pair.as_str())),
-            },
-            Rule::list => self.list(pair, depth),
-            Rule::named => self.named(pair, depth),
+    /// Operands and the operators between them, as far as the precedence of these is at least `lowest`.
+    fn joined(&self, parts: &mut Parts<'_>, lowest: u8, depth: usize) -> Option<Expr> {
+        let mut left = match parts.next_if(|part| part.as_rule() == Rule::negate) {
+            Some(minus) => {
+                let value = self.joined(parts, NEGATION, depth)?;
+                Expr {
+                    span: self.span(&minus).to(value.span),
+                    kind: ExprKind::Negate(Box::new(value)),
+                }
+            }
+            None => self.operand(parts, depth)?,
+        };
+        let joins = |part: &Pair<'_, Rule>| {
+            part.as_rule() == Rule::infix && precedence(operator(self.written(part))).0 >= lowest
+        };
+        while let Some(sign) = parts.next_if(joins) {
+            let sign = self.operator(&sign);
+            let right = self.joined(parts, precedence(sign.node).1, depth)?;
+            left = binary(sign, left, right);
+        }
+        Some(left)
+    }
+
+    /// An operand and what is attached to it: its unit, its arguments, its fields and indices.
+    fn operand(&self, parts: &mut Parts<'_>, depth: usize) -> Option<Expr> {
+        let pair = parts.next()?;
+        let mut result = match pair.as_rule() {
+            Rule::number => self.quantity(&pair, parts),
+            Rule::variable => self.named(&pair, parts, depth)?,
+            Rule::text => {
+                let text = self.text(&pair);
+                Expr {
+                    span: text.span,
+                    kind: ExprKind::Text(text.node),
+                }
+            }
+            Rule::list => self.list(pair, depth)?,
             Rule::parenthesised => {
-                let inner = pair
-                    .into_inner()
-                    .find(|part| part.as_rule() == Rule::expression);
-                let kind = inner.map_or(ExprKind::Faulty, |inner| {
-                    ExprKind::Parenthesised(Box::new(self.expression(inner, depth)))
-                });
-                Expr { span, kind }
+                let span = self.span(&pair);
+                let inner = self.expression(pair.into_inner().nth(1)?, depth)?;
+                Expr {
+                    span,
+                    kind: ExprKind::Parenthesised(Box::new(inner)),
+                }
             }
-            _ => Self::faulty(span),
+            _ => return None,
+        };
+        let attached = |part: &Pair<'_, Rule>| matches!(part.as_rule(), Rule::field | Rule::index);
+        while let Some(part) = parts.next_if(attached) {
+            result = if part.as_rule() == Rule::field {
+                self.field(result, part, parts, depth)?
+            } else {
+                let span = result.span.to(self.span(&part));
+                let index = self.expression(part.into_inner().nth(1)?, depth)?;
+                let (base, index) = (Box::new(result), Box::new(index));
+                let kind = ExprKind::Index { base, index };
+                Expr { span, kind }
+            };
         }
+        Some(result)
     }
 
-    fn quantity(&self, pair: Pair<'_, Rule>) -> Expr {
-        let mut parts = pair.into_inner();
-        let number = parts
-            .next()
-            .map(|number| (number.as_str().to_owned(), self.span(&number)));
-        let Some((text, start)) = number else {
-            return Self::faulty(Span::new(self.file, self.base, self.base));
-        };
-        let unit: Option<UnitToken> = parts.next().map(|unit| self.ident(&unit));
+    fn quantity(&self, number: &Pair<'_, Rule>, parts: &mut Parts<'_>) -> Expr {
+        let text = self.written(number).to_owned();
+        let start = self.span(number);
+        let unit = parts.next_if(|part| part.as_rule() == Rule::unit);
+        let unit: Option<UnitToken> = unit.map(|unit| self.ident(&unit));
         let span = unit.as_ref().map_or(start, |unit| start.to(unit.span));
         // `tokens` has rejected a number that is not finite before the grammar is applied.
         let value = text.parse().unwrap_or(f64::NAN);
@@ -270,78 +262,80 @@ impl Lowering {
         }
     }
 
-    fn list(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let mut span: Option<Span> = None;
+    fn named(&self, name: &Pair<'_, Rule>, parts: &mut Parts<'_>, depth: usize) -> Option<Expr> {
+        let name = self.ident(name);
+        let Some(list) = parts.next_if(|part| part.as_rule() == Rule::arguments) else {
+            return Some(Expr {
+                span: name.span,
+                kind: ExprKind::Name(name.node),
+            });
+        };
+        let span = name.span.to(self.span(&list));
+        let arguments = self.arguments(list, depth)?;
+        let kind = ExprKind::Call { name, arguments };
+        Some(Expr { span, kind })
+    }
+
+    /// `.name`, and its arguments where it has some.
+    fn field(
+        &self,
+        base: Expr,
+        field: Pair<'_, Rule>,
+        parts: &mut Parts<'_>,
+        depth: usize,
+    ) -> Option<Expr> {
+        let name = self.ident(&field.into_inner().nth(1)?);
+        let span = base.span.to(name.span);
+        let base = Box::new(base);
+        let Some(list) = parts.next_if(|part| part.as_rule() == Rule::arguments) else {
+            let kind = ExprKind::Field { base, name };
+            return Some(Expr { span, kind });
+        };
+        let span = span.to(self.span(&list));
+        let arguments = self.arguments(list, depth)?;
+        let kind = ExprKind::Member {
+            base,
+            name,
+            arguments,
+        };
+        Some(Expr { span, kind })
+    }
+
+    fn list(&self, pair: Pair<'_, Rule>, depth: usize) -> Option<Expr> {
+        let span = self.span(&pair);
         let mut items = Vec::new();
         let mut unit = None;
-        let whole = self.span(&pair);
         for part in pair.into_inner() {
-            let here = self.span(&part);
             match part.as_rule() {
-                Rule::expression => items.push(self.expression(part, depth)),
-                Rule::unit => {
-                    unit = Some(self.ident(&part));
-                    span = span.map(|span| span.to(here));
-                }
-                Rule::open_bracket | Rule::close_bracket => {
-                    span = Some(span.map_or(here, |span| span.to(here)));
-                }
+                Rule::expression => items.push(self.expression(part, depth)?),
+                Rule::unit => unit = Some(self.ident(&part)),
                 _ => {}
             }
         }
-        Expr {
-            span: span.unwrap_or(whole),
-            kind: ExprKind::List { items, unit },
-        }
+        let kind = ExprKind::List { items, unit };
+        Some(Expr { span, kind })
     }
 
-    fn named(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
-        let whole = self.span(&pair);
-        let mut parts = pair.into_inner();
-        let Some(name) = parts.next() else {
-            return Self::faulty(whole);
-        };
-        let name = self.ident(&name);
-        let Some(list) = parts.next() else {
-            return Expr {
-                span: name.span,
-                kind: ExprKind::Name(name.node),
-            };
-        };
-        let span = name.span.to(self.span(&list));
-        let arguments = self.arguments(list, depth);
-        Expr {
-            span,
-            kind: ExprKind::Call { name, arguments },
-        }
-    }
-
-    fn arguments(&self, list: Pair<'_, Rule>, depth: usize) -> Vec<Argument> {
-        let span = self.span(&list);
+    fn arguments(&self, list: Pair<'_, Rule>, depth: usize) -> Option<Vec<Argument>> {
         let mut arguments: Vec<Argument> = Vec::new();
         for part in list
             .into_inner()
             .filter(|part| part.as_rule() == Rule::argument)
         {
-            let mut argument_name = None;
-            let mut value = None;
-            for part in part.into_inner() {
-                match part.as_rule() {
-                    Rule::argument_name => argument_name = Some(self.ident(&part)),
-                    Rule::expression => value = Some(self.expression(part, depth)),
-                    _ => {}
-                }
+            let mut parts = part.into_inner();
+            let mut last = parts.next()?;
+            let mut name = None;
+            if last.as_rule() == Rule::argument_name {
+                name = Some(self.ident(&last));
+                last = parts.nth(1)?;
             }
-            let value = value.unwrap_or_else(|| Self::faulty(span));
-            if argument_name.is_none() && arguments.iter().any(|before| before.name.is_some()) {
+            let value = self.expression(last, depth)?;
+            if name.is_none() && arguments.iter().any(|before| before.name.is_some()) {
                 self.error(messages::positional_after_named(value.span));
                 continue;
             }
-            arguments.push(Argument {
-                name: argument_name,
-                value,
-            });
+            arguments.push(Argument { name, value });
         }
-        arguments
+        Some(arguments)
     }
 }

@@ -7,92 +7,75 @@ use pest::iterators::Pair;
 use super::{
     ast::{Block, Entry, Expr, ExprKind, Ident, Item, ItemKind},
     grammar::Rule,
+    lexical::symbols::Symbols,
 };
 use psd_text::diagnostic::Diagnostic;
-use psd_text::source::{FileId, Span, Spanned};
+use psd_text::source::{Span, Spanned};
 
-/// Lowers the pairs of one piece of text that starts at byte `base` of `file`.
-pub struct Lowering {
-    pub file: FileId,
-    pub base: usize,
+/// Lowers the pairs of one piece of a file, whose tokens are `symbols`.
+pub struct Lowering<'a> {
+    symbols: &'a Symbols<'a>,
     pub errors: RefCell<Vec<Diagnostic>>,
 }
 
-impl Lowering {
+impl<'a> Lowering<'a> {
     #[must_use]
-    pub fn new(file: FileId, base: usize) -> Self {
+    pub fn new(symbols: &'a Symbols<'a>) -> Self {
         Self {
-            file,
-            base,
+            symbols,
             errors: RefCell::new(Vec::new()),
         }
     }
 
-    /// The span of a pair. It is exact for tokens and for rules that end with one; a rule that ends with an optional part may
-    /// include spaces after it, so those spans are built from their parts.
+    /// The span of a pair, from its first token to its last one.
     #[must_use]
     pub fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let span = pair.as_span();
-        Span::new(self.file, self.base + span.start(), self.base + span.end())
+        self.symbols.span(span.start(), span.end())
+    }
+
+    /// The first token of a pair, as written.
+    #[must_use]
+    pub fn written(&self, pair: &Pair<'_, Rule>) -> &'a str {
+        self.symbols.written(pair.as_span().start())
     }
 
     #[must_use]
     pub fn ident(&self, pair: &Pair<'_, Rule>) -> Ident {
-        Spanned::new(pair.as_str().to_owned(), self.span(pair))
+        Spanned::new(self.written(pair).to_owned(), self.span(pair))
     }
 
     #[must_use]
     pub fn text(&self, pair: &Pair<'_, Rule>) -> Spanned<String> {
-        Spanned::new(unescape(pair.as_str()), self.span(pair))
+        Spanned::new(unescape(self.written(pair)), self.span(pair))
     }
 
     /// Any item, blocks included.
     #[must_use]
     pub fn item(&self, pair: Pair<'_, Rule>) -> Option<Item> {
+        let span = self.span(&pair);
         let rule = pair.as_rule();
-        let mut span = self.span(&pair);
-        let mut name = None;
-        let mut text = None;
-        let mut values = Vec::new();
-        if rule == Rule::block {
-            return self.block(pair).map(|block| Item {
-                span,
-                kind: ItemKind::Block(block),
-            });
-        }
-        for part in pair.into_inner() {
-            let end = match part.as_rule() {
-                Rule::new_name => self.span(&name.insert(part).clone()),
-                Rule::text => self.span(&text.insert(part).clone()),
-                Rule::expression => {
-                    values.push(self.expression(part, 0));
-                    values[values.len() - 1].span
-                }
-                Rule::range => {
-                    values.push(self.range(part, 0));
-                    values[values.len() - 1].span
-                }
-                _ => self.span(&part),
-            };
-            span.end = end.end;
-        }
-        let mut values = values.into_iter();
+        let mut parts = pair.clone().into_inner();
         let kind = match rule {
+            Rule::block => ItemKind::Block(self.block(pair)?),
             Rule::use_item => ItemKind::Use {
-                path: self.text(&text?),
-            },
-            Rule::let_item => ItemKind::Let {
-                name: self.ident(&name?),
-                value: values.next()?,
-            },
-            Rule::param_item => ItemKind::Param {
-                name: self.ident(&name?),
-                value: values.next()?,
-                bounds: values.next(),
+                path: self.text(&parts.nth(1)?),
             },
             Rule::require_item => ItemKind::Require {
-                label: self.text(&text?),
-                condition: values.next()?,
+                label: self.text(&parts.nth(1)?),
+                condition: self.expression(parts.next()?, 0)?,
+            },
+            Rule::let_item => ItemKind::Let {
+                name: self.ident(&parts.nth(1)?),
+                value: self.expression(parts.nth(1)?, 0)?,
+            },
+            Rule::param_item => ItemKind::Param {
+                name: self.ident(&parts.nth(1)?),
+                value: self.expression(parts.nth(1)?, 0)?,
+                bounds: match parts.next() {
+                    Some(_) => self.range(&mut parts.peekable(), 0),
+                    None => None,
+                },
             },
             _ => return None,
         };
@@ -144,7 +127,7 @@ impl Lowering {
     pub fn entry(&self, pair: Pair<'_, Rule>) -> Option<Entry> {
         let mut parts = pair.into_inner();
         let key = self.ident(&parts.next()?);
-        let value = self.expression(parts.find(|part| part.as_rule() == Rule::expression)?, 0);
+        let value = self.expression(parts.nth(1)?, 0)?;
         Some(Entry {
             span: key.span.to(value.span),
             key,

@@ -2,6 +2,7 @@
 //! is parsed as a whole; one with errors is cut into pieces (`layout`), which are parsed separately.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use crate::codes::{E101, E103, E104};
 use pest::{
@@ -18,6 +19,7 @@ use super::{
     control, foreign,
     grammar::{Grammar, Rule},
     layout::{self, Piece, Statement},
+    lexical::symbols::Symbols,
     lexical::tokens::{Kind, Tokens},
     lexical::{confusables, long_lines},
     limits,
@@ -112,7 +114,7 @@ fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let mut tokens = Tokens::read(text, file);
     ast.comments = tokens.comments();
     if tokens.errors.is_empty()
-        && let Some(items) = whole(text, file)
+        && let Some(items) = whole(&tokens)
     {
         ast.items = items;
         ast.misspelt = normalized.spans;
@@ -138,11 +140,10 @@ fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
     ast.misspelt = normalized.spans;
     if errors.is_empty() {
         // The grammar rejected the whole file but accepts the pieces: report the position at which it stopped.
-        errors.extend(
-            Grammar::parse(Rule::file, text)
-                .err()
-                .map(|error| refused(&tokens, text, 0, Rule::file, &error)),
-        );
+        let symbols = Symbols::new(&tokens, 0, tokens.list.len());
+        let error = Grammar::parse(Rule::file, &symbols.text).err();
+        let bytes = 0..text.len();
+        errors.extend(error.map(|error| refused(&tokens, &symbols, &bytes, Rule::file, &error)));
     }
     errors.sort_by_key(|error| error.span().map(|span| (span.start, span.end)));
     (ast, errors)
@@ -154,9 +155,11 @@ fn follows(error: &Diagnostic) -> bool {
 }
 
 /// A valid file; `None` where there is any error.
-fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
-    let lowering = Lowering::new(file, 0);
-    let pairs = Grammar::parse(Rule::file, text).ok()?.next()?.into_inner();
+fn whole(tokens: &Tokens) -> Option<Vec<Item>> {
+    let symbols = Symbols::new(tokens, 0, tokens.list.len());
+    let lowering = Lowering::new(&symbols);
+    let file = Grammar::parse(Rule::file, &symbols.text).ok()?.next()?;
+    let pairs = file.into_inner();
     let items = pairs.filter(|pair| !matches!(pair.as_rule(), Rule::end_of_line | Rule::EOI));
     let items: Option<Vec<Item>> = items.map(|pair| lowering.item(pair)).collect();
     lowering.errors.into_inner().is_empty().then_some(items)?
@@ -181,17 +184,18 @@ fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
     (items, reader.errors)
 }
 
-/// The error of `text`, which starts at byte `base` and does not match `rule`.
+/// The error of the piece `bytes` of a file, whose tokens are `symbols` and do not match `rule`.
 fn refused(
     tokens: &Tokens,
-    text: &str,
-    base: usize,
+    symbols: &Symbols,
+    bytes: &Range<usize>,
     rule: Rule,
     error: &pest::error::Error<Rule>,
 ) -> Diagnostic {
-    let offset = match error.location {
-        InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => offset,
+    let index = match error.location {
+        InputLocation::Pos(index) | InputLocation::Span((index, _)) => index,
     };
+    let at = symbols.start(index).unwrap_or(bytes.end);
     let expected = match &error.variant {
         // A head ends where its brace opens.
         ErrorVariant::ParsingError { positives, .. }
@@ -202,14 +206,12 @@ fn refused(
         ErrorVariant::ParsingError { positives, .. } => rule_names::expected(positives),
         ErrorVariant::CustomError { .. } => "something else".to_owned(),
     };
-    let at = base + offset;
-    if let Some(form) = foreign::form(tokens, &(base..base + text.len()), at, rule) {
+    if let Some(form) = foreign::form(tokens, bytes, at, rule) {
         return form;
     }
     let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
     let next = later.iter().find(|token| token.kind != Kind::Comment);
-    let inside =
-        next.filter(|token| token.start < base + text.len() || token.kind == Kind::Newline);
+    let inside = next.filter(|token| token.start < bytes.end || token.kind == Kind::Newline);
     if let Some(token) = inside.filter(|token| token.kind != Kind::Newline) {
         let mut found: String = tokens.text_of(*token).chars().take(30).collect();
         if found.len() < token.end - token.start {
@@ -221,8 +223,7 @@ fn refused(
             &expected,
         );
     }
-    let end = base + text.len().min(offset);
-    let end = base + tokens.text[base..end].trim_end().len();
+    let end = bytes.start + tokens.text[bytes.start..at].trim_end().len();
     let context = if inside.is_some() {
         "the end of the line"
     } else {
@@ -295,16 +296,16 @@ impl Pieces<'_> {
         if statement.broken || self.errors[..self.lexical].iter().any(within) {
             return None;
         }
-        let text = &self.tokens.text[start..end];
-        let mut pairs = match Grammar::parse(rule, text) {
+        let symbols = Symbols::new(self.tokens, statement.start, statement.end);
+        let mut pairs = match Grammar::parse(rule, &symbols.text) {
             Ok(pairs) => pairs,
             Err(error) => {
                 self.errors
-                    .push(refused(self.tokens, text, start, rule, &error));
+                    .push(refused(self.tokens, &symbols, &(start..end), rule, &error));
                 return None;
             }
         };
-        let lowering = Lowering::new(self.tokens.file, start);
+        let lowering = Lowering::new(&symbols);
         let pair = pairs.next()?.into_inner().next()?;
         let lowered = lower(&lowering, pair);
         let errors = lowering.errors.into_inner();
@@ -347,7 +348,9 @@ impl Pieces<'_> {
             ));
             return None;
         }
-        if let Some(item) = self.alone(statement, Rule::item_alone, Lowering::item) {
+        if let Some(item) = self.alone(statement, Rule::item_alone, |lowering, pair| {
+            lowering.item(pair)
+        }) {
             return Some(item);
         }
         let span = self.tokens.span(start, end);
@@ -405,7 +408,9 @@ impl Pieces<'_> {
             self.errors
                 .push(messages::no_control(message, help, word.span, whole));
         } else if self
-            .alone(statement, Rule::head_alone, Lowering::head)
+            .alone(statement, Rule::head_alone, |lowering, pair| {
+                lowering.head(pair)
+            })
             .is_some()
         {
             let (start, end) = self.bounds(statement);
@@ -475,8 +480,8 @@ impl Pieces<'_> {
         fields: &[Statement],
         close: Option<usize>,
     ) -> Option<Item> {
-        let sound =
-            (head.end > head.start).then(|| self.alone(head, Rule::head_alone, Lowering::head));
+        let sound = (head.end > head.start)
+            .then(|| self.alone(head, Rule::head_alone, |lowering, pair| lowering.head(pair)));
         if sound.is_none() {
             let brace = self.tokens.list[open];
             let span = self.tokens.span(brace.start, brace.end);
@@ -518,7 +523,9 @@ impl Pieces<'_> {
 
     /// A field; with an error, its key and a faulty value, so that it does not count as missing.
     fn entry(&mut self, statement: Statement) -> Option<Entry> {
-        if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
+        if let Some(entry) = self.alone(statement, Rule::entry_alone, |lowering, pair| {
+            lowering.entry(pair)
+        }) {
             return Some(entry);
         }
         // A single word is not a field, and `drop` of `drop-height` is no name.
@@ -556,7 +563,7 @@ mod tests {
             let mut tokens = Tokens::read(text, file);
             let (items, errors) = piecewise(&mut tokens);
             assert_eq!(errors, []);
-            assert_eq!(Some(items), whole(text, file));
+            assert_eq!(Some(items), whole(&tokens));
         }
     }
 }

@@ -19,25 +19,15 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         | Rule::range
         | Rule::sum
         | Rule::operand
-        | Rule::quantity
         | Rule::list
         | Rule::parenthesised
-        | Rule::named
         | Rule::variable
         | Rule::number
         | Rule::negate
         | Rule::open_bracket
         | Rule::open_paren => "a value",
         Rule::argument | Rule::argument_name => "an argument",
-        Rule::infix
-        | Rule::plus
-        | Rule::minus
-        | Rule::times
-        | Rule::divided
-        | Rule::power
-        | Rule::compare
-        | Rule::dots
-        | Rule::and_word => "an operator",
+        Rule::infix | Rule::compare | Rule::dots | Rule::and_word => "an operator",
         Rule::text => "a string in quotes",
         Rule::unit => "a unit",
         Rule::name | Rule::new_name | Rule::word => "a name",
@@ -52,22 +42,20 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         Rule::close_paren => "`)`",
         Rule::end_of_line | Rule::newline | Rule::EOI => "the end of the line",
         Rule::within_word
-        | Rule::stepped
         | Rule::in_word
         | Rule::step_word
-        | Rule::WHITESPACE
-        | Rule::to_line_end
         | Rule::gap
+        | Rule::compared
+        | Rule::limit
         | Rule::postfix
+        | Rule::attached
+        | Rule::joining
         | Rule::field
         | Rule::index
         | Rule::dot
         | Rule::arguments
-        | Rule::unit_factor
-        | Rule::unit_name
-        | Rule::unit_letter
-        | Rule::name_char
-        | Rule::reserved => return None,
+        | Rule::any_word
+        | Rule::free_word => return None,
     })
 }
 

@@ -49,7 +49,9 @@ impl Program for Files {
                 _ => {}
             }
         }
-        checker.parameters();
+        for index in 0..scope.values.len() {
+            checker.parameter(index);
+        }
         checker.requirements();
         let mut diagnostics = checker.diagnostics;
         diagnostics.sort_by_key(|found| found.span().map(|span| (span.file, span.start)));

@@ -212,6 +212,12 @@ impl<N> ContactLaw<N> {
         }
     }
 
+    /// Whether the contact force has no bound: it is inversely proportional to the time step.
+    #[must_use]
+    pub const fn is_rigid(&self) -> bool {
+        matches!(self, Self::Rigid)
+    }
+
     /// Whether the coefficient of restitution is an input of the law.
     #[must_use]
     pub const fn states_restitution(&self) -> bool {

@@ -1,5 +1,5 @@
-//! An impact on an ideal rig from start to end. In: the inputs, a specimen. Out: the ends of its steps, bit for bit those of
-//! [`ImpactSolver`]. Where it can, it keeps all numbers between two steps in registers.
+//! An impact from start to end, on an ideal rig or along a recorded path. In: the inputs, a specimen or readings. Out: the ends of its
+//! steps, bit for bit those of [`ImpactSolver`]. Where it can, it keeps all numbers between two steps in registers.
 
 use super::energy::Energies;
 use super::solver::impact_state;
@@ -25,8 +25,24 @@ pub fn simulate<S: RestoringForce, K: Sink>(
     steps: u64,
     sink: &mut K,
 ) -> Result<ImpactState, ImpactError> {
-    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
-    let exact = input.integrator == Integrator::Tangent && input.noise == DeclaredNoise::NONE;
+    let solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
+    let read = |[target, _]: [f64; 2]| [target, specimen.move_to(target)];
+    Ok(from_start(input, solver, until, steps, read, sink))
+}
+
+/// An impact on one degree of freedom from its start, of which `solver` is at the start, `steps` steps at most. For a target \[m\] and the
+/// predicted velocity there \[m/s\], `read` gives displacement \[m\] and force \[N\].
+pub(crate) fn from_start<K: Sink>(
+    input: &ImpactInput,
+    mut solver: ImpactSolver,
+    until: Option<Until>,
+    steps: u64,
+    mut read: impl FnMut([f64; 2]) -> [f64; 2],
+    sink: &mut K,
+) -> ImpactState {
+    let exact = input.integrator == Integrator::Tangent
+        && input.noise == DeclaredNoise::NONE
+        && !input.i_modification;
     let stops = match until {
         None | Some(Until::Duration) => Some(false),
         Some(Until::StrikerStop) => Some(true),
@@ -34,28 +50,27 @@ pub fn simulate<S: RestoringForce, K: Sink>(
     };
     let start = solver.state();
     match (input.law, stops.filter(|_| exact)) {
-        (ContactLaw::Rigid, Some(stops)) => Ok(run::<_, _, false>(
-            input, start, specimen, stops, steps, sink,
-        )),
-        (ContactLaw::Limit { .. }, Some(stops)) => Ok(run::<_, _, true>(
-            input, start, specimen, stops, steps, sink,
-        )),
+        (ContactLaw::Rigid, Some(stops)) => run::<_, false>(input, start, read, stops, steps, sink),
+        (ContactLaw::Limit { .. }, Some(stops)) => {
+            run::<_, true>(input, start, read, stops, steps, sink)
+        }
         _ => {
             let read = |solver: &mut ImpactSolver| {
-                let target = solver.predict();
-                [target, specimen.move_to(target)]
+                let mut velocity = [0.0];
+                solver.predicted_velocity(&mut velocity);
+                read([solver.predict(), velocity[0]])
             };
             solver.run(until, steps, read, sink);
-            Ok(*solver.state())
+            *solver.state()
         }
     }
 }
 
 /// In tangent form with exact readings, under the rigid law or one that is `LIMITED`.
-fn run<S: RestoringForce, K: Sink, const LIMITED: bool>(
+fn run<K: Sink, const LIMITED: bool>(
     input: &ImpactInput,
     start: &ImpactState,
-    specimen: &mut S,
+    mut read: impl FnMut([f64; 2]) -> [f64; 2],
     ends_at_stop: bool,
     steps: u64,
     sink: &mut K,
@@ -68,7 +83,11 @@ fn run<S: RestoringForce, K: Sink, const LIMITED: bool>(
         falls: input.gravity != 0.0,
     };
     let mut now = BetweenSteps::at_rest(
-        [start.restoring_force, start.acceleration],
+        [
+            start.displacement,
+            start.restoring_force,
+            start.acceleration,
+        ],
         [start.striker_displacement, start.striker_velocity],
         Secant::of(start.tangent_stiffness),
         start.input,
@@ -77,10 +96,14 @@ fn run<S: RestoringForce, K: Sink, const LIMITED: bool>(
         step: 0,
         state: StepState::Free,
         contacts: 0,
+        measured: start.target,
     };
     for step in 1..=steps {
-        let (after, marks) = end_step::<f64, LIMITED>(&inputs, &now, also, |_, displacement| {
-            specimen.move_to(displacement)
+        let mut measured = end.measured;
+        let (after, marks) = end_step::<f64, LIMITED>(&inputs, &now, also, |_, target| {
+            let [displacement, force] = read(target);
+            measured = displacement;
+            [force, displacement - end.measured]
         });
         now = after;
         let begins = end.state == StepState::Free && marks.state != StepState::Free;
@@ -88,6 +111,7 @@ fn run<S: RestoringForce, K: Sink, const LIMITED: bool>(
             step,
             state: marks.state,
             contacts: end.contacts + u32::from(begins),
+            measured,
         };
         let over = ends_at_stop && marks.over;
         let (structure, state) = end.states(input, &now);
@@ -108,6 +132,8 @@ struct End {
     step: u64,
     state: StepState,
     contacts: u32,
+    /// \[m\]
+    measured: f64,
 }
 
 impl End {
@@ -132,7 +158,7 @@ impl End {
             time,
             displacement: motion.displacement,
             target: motion.displacement,
-            measured_displacement: motion.displacement,
+            measured_displacement: self.measured,
             velocity: motion.velocity,
             acceleration: motion.acceleration,
             restoring_force: motion.force,
@@ -246,6 +272,44 @@ mod tests {
                 assert!(own.len() > 20 && ends.0 == own, "{law:?} until {until:?}");
                 assert_eq!(last, *solver.state());
             }
+        }
+    }
+
+    /// From a loaded start, with readings beside their targets: the same bits.
+    #[test]
+    fn readings_beside_their_targets_give_the_same_bits() {
+        let read = |target: f64| [1.001 * target + 1e-6, STIFFNESS * target + 0.1];
+        for law in [ContactLaw::Rigid, ContactLaw::Limit { force: 60.0 }] {
+            let input = ImpactInput {
+                law,
+                gap: 1e-3,
+                ..ImpactInput::rigid(
+                    STIFFNESS,
+                    Approaching {
+                        mass: 1.0,
+                        striker_mass: 10.0,
+                        velocity: 1.0,
+                        time_step: 1e-3,
+                    },
+                )
+            };
+            let solver = || ImpactSolver::new(&input, 0.01, STIFFNESS * 0.01).unwrap();
+            let (mut ends, mut velocities) = (Ends(Vec::new()), Vec::new());
+            let reads = |[target, velocity]: [f64; 2]| {
+                velocities.push(velocity);
+                read(target)
+            };
+            from_start(&input, solver(), None, 700, reads, &mut ends);
+            let (mut solver, mut own, mut predicted) = (solver(), Vec::new(), Vec::new());
+            for _ in 0..700 {
+                let mut velocity = [0.0];
+                solver.predicted_velocity(&mut velocity);
+                predicted.extend(velocity);
+                let [displacement, force] = read(solver.predict());
+                solver.complete(displacement, force);
+                own.push((solver.structure().clone(), *solver.state(), false));
+            }
+            assert!(ends.0 == own && velocities == predicted, "{law:?}");
         }
     }
 }

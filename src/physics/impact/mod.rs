@@ -10,6 +10,7 @@ mod step;
 pub mod summary;
 mod until;
 
+pub(crate) use in_one_go::from_start;
 pub use in_one_go::simulate;
 pub use solver::{FrameImpactSolver, ImpactSolver};
 pub use until::Until;

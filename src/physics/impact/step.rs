@@ -140,16 +140,16 @@ pub(super) struct Marks<N: Touching> {
 }
 
 impl BetweenSteps {
-    /// At rest at X = 0 under the force R of the specimen \[N\], with Ẍ \[m/s²\], K_t, and the input energy \[J\].
+    /// At rest at X \[m\] under the force R of the specimen \[N\], with Ẍ \[m/s²\], K_t, and the input energy \[J\].
     pub fn at_rest(
-        [force, acceleration]: [f64; 2],
+        [displacement, force, acceleration]: [f64; 3],
         [xs, vs]: [f64; 2],
         secant: Secant,
         input: f64,
     ) -> Self {
         Self {
             motion: Motion {
-                displacement: 0.0,
+                displacement,
                 velocity: 0.0,
                 acceleration,
                 force,
@@ -187,13 +187,14 @@ impl<N: Touching> BetweenSteps<N> {
     }
 }
 
-/// The contact; eqs. (2c) and (2d), and the force there, from X, R and X₁; the striker; the work of all forces; K_t.
+/// The contact; eqs. (2c) and (2d), and the reading there: `read` gives R₁ and the measured change of X, from X, R and X₁, Ẋ₁; the
+/// striker; the work of all forces; K_t.
 #[inline(always)]
 pub(super) fn end_step<N: Touching, const LIMITED: bool>(
     inputs: &StepInputs<N>,
     from: &BetweenSteps<N>,
     also: Also,
-    force: impl FnOnce([N; 2], N) -> N,
+    read: impl FnOnce([N; 2], [N; 2]) -> [N; 2],
 ) -> (BetweenSteps<N>, Marks<N>) {
     let StepInputs {
         body,
@@ -225,12 +226,15 @@ pub(super) fn end_step<N: Touching, const LIMITED: bool>(
         state,
         force: contact.settled(&start, state, v1),
     };
-    let r1 = force([x0, r0], x1);
+    let [r1, measured_change] = read([x0, r0], [x1, v1]);
     let change = x1 - x0;
     let end = contact.advance(body.half, &start, &decided, [x1, v1, change]);
-    let secant = from
-        .secant
-        .after(r1 - r0, change, structure.largest_tangent, LEAST_CHANGE);
+    let secant = from.secant.after(
+        r1 - r0,
+        measured_change,
+        structure.largest_tangent,
+        LEAST_CHANGE,
+    );
     let BetweenSteps {
         mut work,
         mut indented,

@@ -178,6 +178,7 @@ impl<R> RunningResults<R> {
 
 impl RunningResults {
     /// Adds the end of the next step.
+    #[inline(always)]
     pub fn push(&mut self, time_step: f64, end: &StepEnd) {
         let next = Next {
             wanted: Wanted::ALL,
@@ -303,6 +304,7 @@ impl SummaryBuilder {
     }
 
     /// Adds the end of the next step.
+    #[inline(always)]
     pub fn push(&mut self, state: &ImpactState) {
         self.results.push(self.input.time_step, &state.step_end());
         self.events.contacts = state.contacts;

@@ -2,13 +2,17 @@
 //! perturbed readings. Out: the results of the impact, between the ends of steps, so that they follow the inputs smoothly.
 //! It moves no rig and knows no uncertainty.
 
+#![allow(
+    clippy::inline_always,
+    reason = "a part of the loop over the steps, which computes what its parts read"
+)]
+
 use super::recorded_path::{Reading, RecordedPath};
 use crate::impact::peaks::farther;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
 use std::cell::Cell;
 
-use crate::impact::Until;
-use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
+use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, from_start};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
 
@@ -129,7 +133,7 @@ fn run(
     first: Reading,
     mut read: impl FnMut(f64, f64) -> ((f64, f64), bool),
 ) -> Result<Outcome, ImpactError> {
-    let mut solver = ImpactSolver::new(input, first.target, first.force)?;
+    let solver = ImpactSolver::new(input, first.target, first.force)?;
     let start = ImpactState {
         measured_displacement: first.displacement,
         ..*solver.state()
@@ -139,14 +143,12 @@ fn run(
         results: ImpactResults::new(input, until, &start),
         departed: &departed,
     };
-    let measure = |solver: &mut ImpactSolver| {
-        let mut velocity = [0.0];
-        solver.predicted_velocity(&mut velocity);
-        let (reading, has_departed) = read(solver.predict(), velocity[0]);
+    let measure = |[target, velocity]: [f64; 2]| {
+        let (reading, has_departed) = read(target, velocity);
         departed.set(has_departed);
         reading.into()
     };
-    solver.run(Some(until), steps, measure, &mut results);
+    from_start(input, solver, Some(until), steps, measure, &mut results);
     Ok(results.results.finish())
 }
 
@@ -154,13 +156,47 @@ fn run(
 pub struct ImpactResults {
     summary: SummaryBuilder,
     between: Between,
-    end: Ending,
     farthest: f64,
     before_departure: Option<ImpactValues>,
     until: Until,
     time_step: f64,
-    /// At the end of the step before.
-    before: ImpactState,
+    /// The ends of the last two steps.
+    before: StepEnd,
+    now: StepEnd,
+    /// Whether the run ends inside the last step, where a velocity is zero.
+    stopped: bool,
+}
+
+/// The numbers at the end of a step that are interpolated within steps.
+#[derive(Clone, Copy)]
+struct StepEnd {
+    /// \[s\]
+    time: f64,
+    /// \[m\]
+    displacement: f64,
+    /// \[m/s\]
+    velocity: f64,
+    striker_velocity: f64,
+    /// \[N\]
+    force: f64,
+    /// \[J\]
+    restoring: f64,
+    damping: f64,
+}
+
+impl StepEnd {
+    #[inline]
+    const fn of(state: &ImpactState) -> Self {
+        Self {
+            time: state.time,
+            displacement: state.displacement,
+            velocity: state.velocity,
+            striker_velocity: state.striker_velocity,
+            force: state.force_at_computed,
+            restoring: state.energies.restoring,
+            damping: state.energies.damping,
+        }
+    }
 }
 
 /// Keeps the results as they were before the path departed from its record.
@@ -171,6 +207,7 @@ struct Departing<'a> {
 }
 
 impl<V> Sink<V> for Departing<'_> {
+    #[inline(always)]
     fn push(&mut self, _: &State<V>, now: &ImpactState, over: bool) {
         if self.departed.get() {
             self.results.departs();
@@ -191,43 +228,39 @@ impl ImpactResults {
     pub fn new(input: &ImpactInput, until: Until, start: &ImpactState) -> Self {
         let mut summary = SummaryBuilder::new(input);
         summary.push(start);
-        let end = Ending {
-            share: 1.0,
-            displacement: start.displacement,
-            restoring: 0.0,
-            damping: 0.0,
-        };
         let farthest = farther(0.0, start.displacement);
+        let start = StepEnd::of(start);
         Self {
             summary,
-            between: Between::new(start),
-            end,
+            between: Between::new(&start),
             farthest,
             before_departure: None,
             until,
             time_step: input.time_step,
-            before: *start,
+            before: start,
+            now: start,
+            stopped: false,
         }
     }
 
     /// Adds the end of a step; `over`: the run ends with this step.
+    #[inline(always)]
     pub fn take(&mut self, now: &ImpactState, over: bool) {
-        let before = std::mem::replace(&mut self.before, *now);
         self.summary.push(now);
         self.farthest = farther(self.farthest, now.displacement);
-        self.between.take(&before, now, self.time_step);
-        self.end = Ending::of(
-            &before,
-            now,
-            over && self.until == Until::StrikerStop,
-            self.time_step,
-        );
+        self.before = std::mem::replace(&mut self.now, StepEnd::of(now));
+        self.between.take(&self.before, &self.now, self.time_step);
+        self.stopped = over && self.until == Until::StrikerStop;
     }
 
     /// Fraction of the last step at which the run ends.
     #[must_use]
-    pub const fn share(&self) -> f64 {
-        self.end.share
+    pub fn share(&self) -> f64 {
+        self.end().share
+    }
+
+    fn end(&self) -> Ending {
+        Ending::of(&self.before, &self.now, self.stopped, self.time_step)
     }
 
     /// From the next step on the path differs from the record.
@@ -254,7 +287,7 @@ impl ImpactResults {
     }
 
     fn values(&self, summary: &ImpactSummary) -> ImpactValues {
-        let Self { between, end, .. } = self;
+        let (between, end) = (&self.between, self.end());
         ImpactValues {
             summary: *summary,
             max_displacement: between.displacement,
@@ -286,7 +319,7 @@ struct Between {
 }
 
 impl Between {
-    const fn new(start: &ImpactState) -> Self {
+    const fn new(start: &StepEnd) -> Self {
         Self {
             displacement: start.displacement,
             time: 0.0,
@@ -296,18 +329,18 @@ impl Between {
     }
 
     /// Inside a step the velocity is linear: the trapezoidal rule, eq. (2d).
-    fn take(&mut self, before: &ImpactState, now: &ImpactState, time_step: f64) {
+    #[inline(always)]
+    fn take(&mut self, before: &StepEnd, now: &StepEnd, time_step: f64) {
         let [displacement, time, absorbed] = match crossing(before.velocity, now.velocity) {
             Some(share) => {
                 let further = 0.5 * before.velocity * share * time_step;
-                let force = before.force_at_computed;
                 [
                     before.displacement + further,
                     before.time + share * time_step,
-                    before.energies.restoring + force * further,
+                    before.restoring + before.force * further,
                 ]
             }
-            None => [now.displacement, now.time, now.energies.restoring],
+            None => [now.displacement, now.time, now.restoring],
         };
         if displacement > self.displacement {
             (self.displacement, self.time, self.absorbed) = (displacement, time, absorbed);
@@ -331,7 +364,7 @@ struct Ending {
 }
 
 impl Ending {
-    fn of(before: &ImpactState, now: &ImpactState, stopped: bool, time_step: f64) -> Self {
+    fn of(before: &StepEnd, now: &StepEnd, stopped: bool, time_step: f64) -> Self {
         let crossings = [
             (before.velocity, now.velocity),
             (before.striker_velocity, now.striker_velocity),
@@ -350,8 +383,8 @@ impl Ending {
             } else {
                 now.displacement
             },
-            restoring: inside(before.energies.restoring, now.energies.restoring),
-            damping: inside(before.energies.damping, now.energies.damping),
+            restoring: inside(before.restoring, now.restoring),
+            damping: inside(before.damping, now.damping),
         }
     }
 }

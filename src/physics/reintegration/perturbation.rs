@@ -61,7 +61,7 @@ impl BelowRange {
     /// otherwise its noise would decide the sign.
     #[must_use]
     pub fn error_of(self, reading: f64) -> f64 {
-        if reading.abs() <= self.zero {
+        if self.error == 0.0 || reading.abs() <= self.zero {
             return 0.0;
         }
         self.error * (self.end - reading.abs()).max(0.0) * reading.signum()
@@ -125,12 +125,14 @@ impl Perturbation {
 
     /// A velocity or a small motion of the re-run, in metres of the record.
     #[must_use]
+    #[inline]
     pub fn recorded(&self, axis: usize, value: f64) -> f64 {
         value / self.axes[axis].displacement_scale
     }
 
     /// The position of the record that these instruments read as this displacement \[m\].
     #[must_use]
+    #[inline]
     pub fn recorded_position(&self, axis: usize, reading: f64) -> f64 {
         let Instruments {
             displacement_scale: scale,
@@ -147,6 +149,7 @@ impl Perturbation {
     /// the mean of so many samples. Every reading has its own errors: noise, which a mean averages, and q/√12. All readings of an axis
     /// have q/√12 in common.
     #[must_use]
+    #[inline]
     pub fn read(&self, reading: u64, axis: usize, samples: u32, read: (f64, f64)) -> (f64, f64) {
         let (displacement, force) = read;
         let instruments = &self.axes[axis];

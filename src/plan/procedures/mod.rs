@@ -1,5 +1,6 @@
 //! The procedures of a plan, and what the stages before the run know of each: in its folder its block (schema), its parameters in SI
-//! (plan) and its history (record). They are data: they check nothing and run nothing.
+//! (plan) and its history (record). The enums here list the procedures: their blocks, parameters and histories. They are data: they check
+//! nothing and run nothing.
 
 pub mod cycle {
     pub mod block;
@@ -53,7 +54,52 @@ pub mod unload {
     pub mod parameters;
 }
 
-use crate::{Cycle, DampingSweep, Escalate, Impact, Move, Preload, Shake, StiffnessRamp, Unload};
+use histories::{
+    CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, MoveStep, ShakeHistory,
+    StiffnessRampHistory, UnloadHistory,
+};
+use parameters::{
+    Cycle, DampingSweep, Escalate, Impact, Move, Preload, Shake, StiffnessRamp, Unload,
+};
+
+/// The parameters of the procedures, by the names that the crate gives on.
+pub mod parameters {
+    pub use crate::procedures::cycle::parameters::{
+        Cycle, CycleInspection, Level, MOST_TARGETS, Sides,
+    };
+    pub use crate::procedures::damping_sweep::parameters::DampingSweep;
+    pub use crate::procedures::escalate::parameters::{Between, Escalate, MOST_IMPACTS};
+    pub use crate::procedures::impact::parameters::{
+        Contact, Impact, ImpactTarget, PointTarget, StoreyTarget,
+    };
+    pub use crate::procedures::mode::Mode;
+    pub use crate::procedures::move_to::parameters::Move;
+    pub use crate::procedures::preload::parameters::Preload;
+    pub use crate::procedures::shake::parameters::Shake;
+    pub use crate::procedures::stepping::{
+        MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in,
+    };
+    pub use crate::procedures::stiffness_ramp::parameters::{
+        BreakCount, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
+        WatchedModel,
+    };
+    pub use crate::procedures::unload::parameters::Unload;
+}
+
+/// The histories of the procedures, by the names that `record` gives on.
+pub mod histories {
+    pub use crate::procedures::cycle::history::{CycleHistory, CycleStep, WholeCycle};
+    pub use crate::procedures::damping_sweep::history::{
+        BroughtTogether, DampingSweepHistory, SweepStep,
+    };
+    pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
+    pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep};
+    pub use crate::procedures::move_to::history::MoveStep;
+    pub use crate::procedures::preload::history::AxialReading;
+    pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
+    pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
+    pub use crate::procedures::unload::history::{Rest, UnloadHistory, UnloadStep, Unloaded};
+}
 
 /// The blocks of the procedures: a plan writes each by its keyword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,14 +138,18 @@ impl ProcedureKind {
     /// Whether it tests the specimen on the rig without the structure of which it is a part.
     #[must_use]
     pub const fn tests_the_specimen_alone(&self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::StiffnessRamp(_)
-                | Self::DampingSweep(_)
-                | Self::Cycle(_)
-                | Self::Move(_)
-                | Self::Preload(_)
-        )
+            | Self::DampingSweep(_)
+            | Self::Cycle(_)
+            | Self::Move(_)
+            | Self::Preload(_) => true,
+            Self::Impact(_)
+            | Self::Shake(_)
+            | Self::Unload(_)
+            | Self::Escalate(_)
+            | Self::Inspect { .. } => false,
+        }
     }
 
     /// The block's keyword, as in `summary.json`.
@@ -124,7 +174,15 @@ impl ProcedureKind {
     pub const fn axial_load(&self) -> Option<(usize, f64)> {
         match self {
             Self::Preload(load) => Some((load.storey, load.force)),
-            _ => None,
+            Self::StiffnessRamp(_)
+            | Self::DampingSweep(_)
+            | Self::Impact(_)
+            | Self::Shake(_)
+            | Self::Cycle(_)
+            | Self::Unload(_)
+            | Self::Escalate(_)
+            | Self::Move(_)
+            | Self::Inspect { .. } => None,
         }
     }
 
@@ -140,6 +198,83 @@ impl ProcedureKind {
             Self::Unload(unload) => Some(unload.specimen),
             Self::Escalate(series) => Some(series.impact.specimen),
             Self::Move(_) | Self::Preload(_) | Self::Inspect { .. } => None,
+        }
+    }
+}
+
+/// The history of a procedure, step by step.
+#[derive(Clone, Debug)]
+pub enum History {
+    StiffnessRamp(StiffnessRampHistory),
+    DampingSweep(DampingSweepHistory),
+    Impact(ImpactHistory),
+    Shake(ShakeHistory),
+    Cycle(CycleHistory),
+    Escalate(EscalateHistory),
+    Move(Vec<MoveStep>),
+    Unload(UnloadHistory),
+    /// Its readings are those of the axial axes.
+    Preload,
+    Inspect,
+}
+
+/// The motion that a procedure integrated, step by step.
+#[derive(Clone, Copy, Debug)]
+pub enum Integrated<'a> {
+    Impact(&'a ImpactHistory),
+    Impacts(&'a EscalateHistory),
+    GroundMotion(&'a ShakeHistory),
+}
+
+impl History {
+    /// The motion that it integrated; None if it integrated none.
+    #[must_use]
+    pub const fn integrated(&self) -> Option<Integrated<'_>> {
+        match self {
+            Self::Impact(impact) => Some(Integrated::Impact(impact)),
+            Self::Escalate(series) => Some(Integrated::Impacts(series)),
+            Self::Shake(shake) => Some(Integrated::GroundMotion(shake)),
+            Self::StiffnessRamp(_)
+            | Self::DampingSweep(_)
+            | Self::Cycle(_)
+            | Self::Move(_)
+            | Self::Unload(_)
+            | Self::Preload
+            | Self::Inspect => None,
+        }
+    }
+
+    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
+    /// first.
+    #[must_use]
+    pub fn above_critical(&self) -> Option<(f64, f64)> {
+        let steps_of = |impact: &ImpactHistory| (impact.time_step, impact.critical_time_step);
+        let mut steps = match self.integrated()? {
+            Integrated::Impact(impact) => vec![steps_of(impact)],
+            Integrated::GroundMotion(shake) => vec![(shake.time_step, shake.critical_time_step)],
+            Integrated::Impacts(series) => {
+                let impacts = series.impacts.iter();
+                impacts.map(|impact| steps_of(&impact.history)).collect()
+            }
+        };
+        steps.retain(|(step, critical)| step > critical);
+        steps.first().copied()
+    }
+
+    /// Degrees of freedom of the scatter of a fitted result. None for a result that is not fitted.
+    #[must_use]
+    pub fn degrees(&self, result: &str) -> Option<f64> {
+        match self {
+            Self::StiffnessRamp(ramp) => ramp.degrees(result),
+            Self::DampingSweep(sweep) => sweep.fit.map(|fit| fit.degrees),
+            Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
+            Self::Impact(_)
+            | Self::Shake(_)
+            | Self::Escalate(_)
+            | Self::Move(_)
+            | Self::Unload(_)
+            | Self::Preload
+            | Self::Inspect => None,
         }
     }
 }

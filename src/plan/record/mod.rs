@@ -4,32 +4,24 @@
 
 pub mod equipment;
 pub mod failpoint;
+pub mod floors;
 mod found;
 mod held;
-pub mod history;
 mod identity;
 pub mod remote;
 mod zero_drift;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
-pub use crate::procedures::cycle::history::{CycleHistory, CycleStep, WholeCycle};
-pub use crate::procedures::damping_sweep::history::{
-    BroughtTogether, DampingSweepHistory, SweepStep,
-};
-pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
-pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep};
-pub use crate::procedures::move_to::history::MoveStep;
-pub use crate::procedures::preload::history::AxialReading;
-pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
-pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
-pub use crate::procedures::unload::history::{Rest, UnloadStep};
+pub use crate::procedures::histories::*;
+pub use crate::procedures::{History, Integrated};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
+pub use floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use held::Held;
-pub use history::History;
-pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use identity::Identity;
 pub use psd_physics::contact::state::StepState;
 pub use psd_physics::identification::LineFit;
@@ -220,21 +212,19 @@ impl NamedResult {
 
     /// The uncertainty contributions of the result of this `reference`.
     #[must_use]
-    pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
+    pub fn contributions_of(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         match self.value {
             ResultValue::Number {
                 uncertainty: Some(own),
                 ..
             } if self.contributions.is_empty() => {
-                vec![Contribution::new(
-                    Source::Fit {
-                        procedure: reference.procedure,
-                        result: self.name,
-                    },
-                    own,
-                )]
+                let result = Source::Fit {
+                    procedure: reference.procedure,
+                    result: self.name,
+                };
+                vec![Contribution::new(result, own)].into()
             }
-            _ => self.contributions.clone(),
+            _ => Cow::Borrowed(&self.contributions),
         }
     }
 }
@@ -299,12 +289,12 @@ impl Results for Record {
         Some(found.value.clone())
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         let found = self
             .procedures
             .get(reference.procedure.0)
             .and_then(|procedure| procedure.result(reference.name));
-        found.map_or_else(Vec::new, |found| found.contributions_of(reference))
+        found.map_or_else(Cow::default, |found| found.contributions_of(reference))
     }
 
     fn degrees(&self, source: Source) -> f64 {

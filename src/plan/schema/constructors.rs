@@ -1,7 +1,7 @@
 //! Constructors of the entries of the schema, to be chained: `Field::quantity(…).above_zero().required(…)`.
 
 use super::types::{
-    Field, FieldType, Kind, Possible, Presence, Range, ResultKind, RigKind, Variant,
+    Field, FieldType, Kind, Peak, Possible, Presence, Range, ResultKind, RigKind, Variant,
 };
 use psd_text::units::Dimension;
 
@@ -236,6 +236,8 @@ impl ResultKind {
             of_elements: false,
             decided_by_condition: false,
             grows_as_inverse_step: false,
+            peak: None,
+            fitted_to_dwells: false,
             made_of: None,
             possible: Possible::Any,
             doc,
@@ -291,6 +293,22 @@ impl ResultKind {
     pub const fn grows_as_inverse_step(self) -> Self {
         Self {
             grows_as_inverse_step: true,
+            ..self
+        }
+    }
+
+    /// It is final only after this peak.
+    pub const fn final_after(self, peak: Peak) -> Self {
+        Self {
+            peak: Some(peak),
+            ..self
+        }
+    }
+
+    /// It is fitted to the readings in dwells.
+    pub const fn fitted_to_dwells(self) -> Self {
+        Self {
+            fitted_to_dwells: true,
             ..self
         }
     }

@@ -19,8 +19,8 @@ pub use columns::Column;
 pub use functions::{CONSTANTS, FUNCTIONS, FunctionKind, Takes, constant};
 pub use synonyms::SYNONYMS;
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
-    Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Peak, Possible, Presence, Range, ResultKind,
+    RigKind, Variant,
 };
 
 use psd_text::units::{Dimension, display};
@@ -79,12 +79,21 @@ pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
 
 /// The entry of a kind of block.
 #[must_use]
-pub fn block(kind: Kind) -> &'static BlockKind {
-    BLOCKS
-        .iter()
-        .copied()
-        .find(|block| block.kind == kind)
-        .unwrap_or(&blocks::plan_block::PLAN)
+pub const fn block(kind: Kind) -> &'static BlockKind {
+    match kind {
+        Kind::Plan => &blocks::plan_block::PLAN,
+        Kind::Specimen => &blocks::specimen::SPECIMEN,
+        Kind::Striker => &blocks::striker::STRIKER,
+        Kind::Ground => &blocks::ground::GROUND,
+        Kind::Limits => &blocks::limits::LIMITS,
+        Kind::Rig => &blocks::rig::RIG,
+        Kind::Reproduces => &blocks::evaluation::reproduces::REPRODUCES,
+        Kind::Report => &blocks::evaluation::report::REPORT,
+        Kind::Golden => &blocks::evaluation::golden::GOLDEN,
+        Kind::Study => &blocks::evaluation::study::STUDY,
+        Kind::Fragility => &blocks::evaluation::study::FRAGILITY,
+        Kind::Procedure(procedure) => procedures::block(procedure),
+    }
 }
 
 /// Whether a result is a fraction that is printed in percent. The name of its procedure and an index may be part of the name.
@@ -134,6 +143,13 @@ mod tests {
     }
 
     #[test]
+    fn a_block_is_listed_under_its_own_kind() {
+        for listed in BLOCKS {
+            assert_eq!(block(listed.kind).keyword, listed.keyword);
+        }
+    }
+
+    #[test]
     fn every_default_with_a_unit_has_the_dimension_of_its_field() {
         /// The field, its arguments, and theirs.
         fn all(field: &'static Field) -> Vec<&'static Field> {
@@ -153,6 +169,31 @@ mod tests {
                     field.name
                 );
             }
+        }
+    }
+
+    /// A largest value is a peak only if the motion went on past it; the verdict asks each result.
+    #[test]
+    fn a_largest_value_of_a_motion_states_after_which_peak_it_is_final() {
+        use crate::procedures::{escalate, impact, shake};
+        use procedures::tracking;
+        let of_the_actuator = [
+            tracking::PEAK_ERROR,
+            tracking::FLOOR_PEAK_ERROR,
+            tracking::TRACKING_ENERGY_ERROR,
+        ];
+        let motions = [
+            impact::block::RESULTS,
+            shake::block::RESULTS,
+            escalate::block::RESULTS,
+        ];
+        for result in motions.into_iter().flatten() {
+            let mut words = result.doc.split(|letter: char| !letter.is_alphanumeric());
+            let largest = words.any(|word| ["largest", "peak"].contains(&word));
+            let exempt = of_the_actuator.iter().any(|kind| kind.name == result.name);
+            let of_impact = result.made_of.and_then(|kind| kind.peak);
+            let stated = result.peak.or(of_impact).is_some();
+            assert!(stated || exempt || !largest, "{}", result.name);
         }
     }
 

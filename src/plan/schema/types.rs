@@ -235,11 +235,40 @@ pub struct ResultKind {
     pub decided_by_condition: bool,
     /// Whether it grows as 1/Δt where the contact force is that of an impulse over one step.
     pub grows_as_inverse_step: bool,
+    /// The peak of a motion on which it depends: it is not final if the motion ended before that peak.
+    pub peak: Option<Peak>,
+    /// Whether it is fitted to the readings in dwells, not to the steps.
+    pub fitted_to_dwells: bool,
     /// The result of each impact of a series that it is made of.
     pub made_of: Option<&'static ResultKind>,
     /// The values that it can have.
     pub possible: Possible,
     pub doc: &'static str,
+}
+
+/// A peak of an impact or of a ground-motion test, or that of the last impact of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peak {
+    /// The largest displacement of the structure.
+    Displacement,
+    /// The instant of the largest displacement of the structure: a time, or an energy up to it.
+    InstantOfDisplacement,
+    /// The peak velocity of the structure.
+    Velocity,
+    ContactForce,
+    BaseShear,
+    /// The peak displacement of each floor.
+    FloorDisplacement,
+    /// The peak drift of each storey, or deformation of each element.
+    Drift,
+    /// The peak force of each element.
+    ElementForce,
+    /// Of an impact in a series, the position in which it leaves the specimen.
+    PositionAfter,
+    /// Of an impact in a series, the drift in which it leaves each storey.
+    DriftAfter,
+    /// The last impact of a series, as far as it decides how many impacts passed.
+    LastImpact,
 }
 
 /// The values that a result can have, whatever the run.

@@ -9,7 +9,7 @@ mod instruments;
 mod threads;
 
 pub use crate::contribution::{Contribution, combined, combined_entries, share};
-pub use crate::results::{sources_of, with_shifts};
+pub use crate::results::{Moved, sources_of};
 pub use crate::source::{Refinement, Source};
 pub use crate::time_step::StepInterval;
 pub use degrees::{

@@ -7,6 +7,7 @@ pub(crate) mod fit_uncertainty;
 pub(crate) mod limit_lines;
 pub(crate) mod loop_sampling;
 pub(crate) mod perturbed_inputs;
+pub(crate) mod predicted;
 pub(crate) mod reached;
 pub(crate) mod results;
 pub(crate) mod violations;

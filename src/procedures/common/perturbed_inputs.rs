@@ -7,7 +7,7 @@ use psd_plan::formula::{Formula, ProcedureId, Results, UncertaintyStatus};
 use psd_plan::uncertainty::engine::{
     Contributions, Evaluate, Progress, Propagation, Shifts, Unknown,
 };
-use psd_plan::uncertainty::{InstrumentUncertainty, Source, sources_of, with_shifts};
+use psd_plan::uncertainty::{InstrumentUncertainty, Moved, Source, sources_of};
 use psd_plan::{DeclaredNoise, Plan};
 
 /// The reason why no uncertainty of a run is reported.
@@ -58,10 +58,12 @@ impl<'run> UncertainRun<'run> {
         shifts: Shifts<'_>,
         then: &mut dyn FnMut(&mut Inputs<'_>) -> Result<T, Stop>,
     ) -> Result<T, String> {
-        with_shifts(self.results, shifts, &mut |results| {
-            then(&mut Inputs::moved(results, self.procedure, self.lift))
-        })
-        .map_err(|stop| out_of_bounds(&stop))
+        let results = &Moved {
+            results: self.results,
+            shifts,
+        };
+        then(&mut Inputs::moved(results, self.procedure, self.lift))
+            .map_err(|stop| out_of_bounds(&stop))
     }
 
     /// Contributions of the inputs and of the instruments on so many `axes` to the `reported` values, for a run of so many recorded steps.

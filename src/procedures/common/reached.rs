@@ -3,7 +3,7 @@
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::Plan;
-use psd_plan::record::{FloorMotion, ImpactHistory};
+use psd_plan::record::{FloorMotion, ImpactHistory, UnloadHistory, Unloaded};
 
 /// Takes displacement \[m\] and force \[N\] of every floor, and the elements of a frame of matrices.
 pub(crate) type Take<'a> = dyn FnMut(&[f64], &[f64], &[ElementReading]) + 'a;
@@ -50,5 +50,17 @@ pub(crate) fn of_axis<S>(steps: &[S], read: impl Fn(&S) -> (f64, f64), give: &mu
     for step in steps {
         let (displacement, force) = read(step);
         give(&[displacement], &[force], &[]);
+    }
+}
+
+/// Gives every step of an unloading, row by row of its table.
+pub(crate) fn of_unloading(history: &UnloadHistory, give: &mut Take<'_>) {
+    for step in &history.steps {
+        match history.of {
+            Unloaded::OneAxis | Unloaded::Floors => {
+                give(&step.displacement, &step.restoring_force, &[]);
+            }
+            Unloaded::Elements => give(&[], &[], &step.elements()),
+        }
     }
 }

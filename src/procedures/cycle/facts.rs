@@ -1,12 +1,18 @@
 //! The facts about a `cycle` that check and report need without running it. In: the `cycle`. Out: facts.
 
 use super::{figures, report};
-use crate::procedures::facts::{Facts, Recorded};
+use crate::procedures::facts::{Facts, Listed, Recorded};
 use psd_plan::procedures::cycle::block as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: figures::FIGURES,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn listed() -> Listed {
+    Listed {
         headline: vec![
             schema::DISSIPATED_ENERGY.name,
             schema::EQUIVALENT_DAMPING_RATIO.name,
@@ -15,7 +21,7 @@ pub(crate) fn facts() -> Facts<'static> {
             schema::MAX_FORCE.name,
             schema::MIN_FORCE.name,
         ],
-        ..Facts::default()
+        ..Listed::default()
     }
 }
 

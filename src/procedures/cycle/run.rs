@@ -163,7 +163,7 @@ impl Cycling {
             .iter()
             .map(|level| level.amplitude.clone())
             .collect::<Vec<_>>();
-        let amplitudes = inputs.list(schema::GIVEN_AMPLITUDES.name, &amplitudes)?;
+        let amplitudes = inputs.list(&schema::GIVEN_AMPLITUDES, &amplitudes)?;
         if let Some(value) = amplitudes
             .iter()
             .copied()
@@ -176,13 +176,13 @@ impl Cycling {
                 "greater than 0",
             ));
         }
-        let about = inputs.number(schema::ABOUT.name, &plan.about, Dimension::LENGTH)?;
-        let pause = inputs.not_negative(schema::PAUSE.name, &plan.pause, Dimension::TIME)?;
+        let about = inputs.number(&schema::ABOUT, &plan.about)?;
+        let pause = inputs.number(&schema::PAUSE, &plan.pause)?;
         let speed = inputs.speed(plan.speed.as_ref())?;
         let rate = plan
             .rate
             .as_ref()
-            .map(|rate| inputs.positive(schema::RATE.name, rate, Dimension::FREQUENCY))
+            .map(|rate| inputs.number(&schema::RATE, rate))
             .transpose()?;
         let (samples, points) = (plan.samples.max(1), plan.points.max(1));
         let manner = Manner {

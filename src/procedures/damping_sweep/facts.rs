@@ -1,7 +1,7 @@
 //! The facts about a damping sweep that check and report need without running it. In: the sweep. Out: facts.
 
 use super::figures;
-use crate::procedures::facts::{Facts, Recorded};
+use crate::procedures::facts::{Facts, Listed, Recorded};
 use crate::procedures::stiffness_ramp;
 use psd_plan::procedures::damping_sweep::block as schema;
 use psd_plan::record::DampingSweepHistory;
@@ -9,12 +9,18 @@ use psd_plan::record::DampingSweepHistory;
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: figures::FIGURES,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn listed() -> Listed {
+    Listed {
         headline: vec![
             schema::DAMPING.name,
             schema::COULOMB_FORCE.name,
             schema::DAMPING_RATIO.name,
         ],
-        ..Facts::default()
+        ..Listed::default()
     }
 }
 

@@ -203,22 +203,17 @@ impl Sweep {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let velocities = inputs.list(schema::VELOCITIES.name, &plan.velocities)?;
-        let stroke = inputs.number("stroke", &plan.stroke, Dimension::LENGTH)?;
-        let stiffness = inputs.positive_estimate(
-            schema::STIFFNESS.name,
-            &plan.stiffness,
-            Dimension::STIFFNESS,
-            None,
-        )?;
+        let velocities = inputs.list(&schema::VELOCITIES, &plan.velocities)?;
+        let stroke = inputs.unbounded(&schema::STROKE, &plan.stroke)?;
+        let stiffness = inputs.estimate(&schema::STIFFNESS, &plan.stiffness, None)?;
         let rate = plan
             .rate
             .as_ref()
-            .map(|rate| inputs.positive(schema::RATE.name, rate, Dimension::FREQUENCY))
+            .map(|rate| inputs.number(&schema::RATE, rate))
             .transpose()?;
         if stroke == 0.0 {
             return Err(Stop::bad_input(
-                "stroke",
+                schema::STROKE.name,
                 stroke,
                 Dimension::LENGTH,
                 "other than 0",
@@ -226,7 +221,7 @@ impl Sweep {
         }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
-            let middle = inputs.number(schema::ABOUT.name, about, Dimension::LENGTH)?;
+            let middle = inputs.number(&schema::ABOUT, about)?;
             // Plastic deformation of the first stroke occurs before anything is read.
             session.go_to(middle + 0.5 * stroke, None)?;
             session.go_to(middle - 0.5 * stroke, None)?;

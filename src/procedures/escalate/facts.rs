@@ -2,7 +2,7 @@
 //! Out: facts.
 
 use super::figures;
-use crate::procedures::facts::{Facts, Recorded};
+use crate::procedures::facts::{Facts, Listed, Recorded};
 use crate::procedures::{impact, stepping};
 use psd_plan::procedures::escalate::block as schema;
 use psd_plan::{Escalate, ImpactTarget};
@@ -18,6 +18,12 @@ pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
         unloads_storeys: true,
         figures,
         shared_figures: &[],
+        ..impact::facts::facts(&series.impact)
+    }
+}
+
+pub(crate) fn listed() -> Listed {
+    Listed {
         headline: vec![
             schema::LAST_PASSED_ENERGY.name,
             schema::FIRST_FAILED_ENERGY.name,
@@ -28,7 +34,6 @@ pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
             schema::RESIDUAL_DRIFT.name,
         ],
         unprinted: stepping::report::TRACKING.to_vec(),
-        ..impact::facts::facts(&series.impact)
     }
 }
 

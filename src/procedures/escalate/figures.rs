@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use crate::procedures::common::limit_lines::conditions_on;
-use crate::procedures::shake;
+use crate::procedures::frame;
 use crate::report::Run;
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
@@ -98,9 +98,9 @@ pub(crate) fn chart(
                 .collect();
             let caption = format!(
                 "{name}: {} against drift, impact after impact; straight lines connect successive impacts.",
-                shake::figures::storey_shear(run)
+                frame::captions::storey_shear(run)
             );
-            (shake::figures::charts::hysteresis(&steps), caption)
+            (frame::charts::hysteresis(&steps), caption)
         }
         _ => return None,
     })
@@ -197,11 +197,11 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
             .filter_map(|impact| Some((impact.energy, of(impact, storey)?)))
             .collect()
     };
-    let series = shake::figures::charts::shown(storeys)
+    let series = frame::charts::shown(storeys)
         .into_iter()
         .enumerate()
         .flat_map(|(curve, storey)| {
-            let colour = shake::figures::charts::style(curve, 1.6).colour;
+            let colour = frame::charts::style(curve, 1.6).colour;
             let peak = Style::line(colour, 1.6, SOLID).marked(Marker::Disc(3.2));
             let rest = Style::line(colour, 1.4, DASHED).marked(Marker::Ring(3.6));
             [

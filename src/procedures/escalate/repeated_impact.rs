@@ -85,7 +85,7 @@ impl<'a> RepeatedImpact<'a> {
 
 /// The velocity of the striker in each impact \[m/s\], each above 0.
 pub(crate) fn velocities(plan: &Escalate, inputs: &Inputs<'_>) -> Result<Vec<f64>, Stop> {
-    let velocities = inputs.list(SPEEDS.name, &plan.velocities)?;
+    let velocities = inputs.list(&SPEEDS, &plan.velocities)?;
     match velocities
         .iter()
         .copied()

@@ -1,6 +1,6 @@
 //! The impacts of a series, one row each, and the storeys of a frame. In: plan and history. Out: blocks.
 
-use crate::procedures::shake;
+use crate::procedures::frame;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};
@@ -10,7 +10,7 @@ use psd_plan::record::{
     EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame,
 };
 use psd_plan::schema::ResultKind;
-use psd_plan::{Frame, Impact, ProcedureKind, StoreyTarget};
+use psd_plan::{Frame, Impact, StoreyTarget};
 use psd_text::units::Dimension;
 
 /// Impacts printed; the tables hold every one.
@@ -18,7 +18,7 @@ const PRINTED: usize = 40;
 
 pub(crate) fn table(
     run: &Run<'_>,
-    index: usize,
+    impact: &Impact,
     procedure: &ProcedureRecord,
     history: &EscalateHistory,
     body: &mut Vec<Block>,
@@ -27,12 +27,6 @@ pub(crate) fn table(
     if impacts.is_empty() {
         return;
     }
-    let Some(ProcedureKind::Escalate(planned)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
-    let impact = &planned.impact;
     if let (
         Some(target),
         [
@@ -52,7 +46,7 @@ pub(crate) fn table(
             frame
                 .modes
                 .as_ref()
-                .map(|modes| shake::report::mode_table(modes, &frame.damping_ratios)),
+                .map(|modes| frame::report::mode_table(modes, &frame.damping_ratios)),
         );
     }
     body.push(rows(procedure, impacts));
@@ -63,11 +57,7 @@ pub(crate) fn table(
         )));
     }
     if impact.storey().is_some() {
-        let frame = run
-            .plan
-            .specimens
-            .get(impact.specimen)
-            .and_then(|specimen| specimen.frame.as_ref());
+        let frame = frame::report::frame_of(run, impact.specimen);
         body.push(storeys(procedure, frame));
         body.push(Block::note(
             "X is the displacement of the struck floor from its initial position. Each impact starts with the striker \
@@ -94,8 +84,8 @@ fn struck(
         "Floor {} is struck in every impact. Contact law: {}. {} Time step {}; critical time step {}.",
         frame.struck + 1,
         impact.contact.title(),
-        shake::report::integrated(
-            shake::report::frame_of(run, impact.specimen),
+        frame::report::integrated(
+            frame::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
             &target.damping,
             &frame.damping_ratios
@@ -145,7 +135,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
                     .map_or_else(|| "—".to_owned(), text)
                     .into()
             };
-            shake::report::known_entry(procedure, kind, storey).unwrap_or_else(plain)
+            frame::report::known_entry(procedure, kind, storey).unwrap_or_else(plain)
         };
         let share = |values: &[f64]| {
             let share = height(storey)
@@ -160,7 +150,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
             share(largest).into(),
             length(left, stayed),
             share(stayed).into(),
-            shake::report::known_entry(procedure, schema::STOREY_ENERGY, storey).unwrap_or_else(
+            frame::report::known_entry(procedure, schema::STOREY_ENERGY, storey).unwrap_or_else(
                 || number::text_beside(took, whole(energy), Dimension::ENERGY).into(),
             ),
         ]
@@ -203,7 +193,7 @@ fn rows(procedure: &ProcedureRecord, impacts: &[SeriesImpact]) -> Block {
             None => "incomplete",
         };
         let known = |list: ResultKind, other: Text| {
-            shake::report::known_entry(procedure, list, index).unwrap_or(other)
+            frame::report::known_entry(procedure, list, index).unwrap_or(other)
         };
         let rest = impact
             .rest_of_struck()

@@ -1,6 +1,8 @@
 //! `escalate`: a series of impacts of increasing energy on one specimen. In: the impact, its levels, the condition. Out: every impact, and
 //! the last one after which the condition held. Each decision follows from results, and they follow from logged readings.
 
+use std::borrow::Cow;
+
 use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, results};
 use crate::procedures::common::calibrated_range;
@@ -54,7 +56,7 @@ fn run(
     let energies = plan
         .energies
         .as_ref()
-        .map(|energies| inputs.list(schema::ENERGIES.name, energies))
+        .map(|energies| inputs.list(&schema::ENERGIES, energies))
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
@@ -262,10 +264,10 @@ impl Results for OfImpact<'_> {
         self.before.result(reference)
     }
 
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
         if reference.procedure == self.own {
             let found = NamedResult::of(&self.results, reference.name);
-            return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
+            return found.map_or_else(Cow::default, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
     }

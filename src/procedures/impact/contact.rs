@@ -2,6 +2,7 @@
 //! numbers, and the part of a report that depends on it. It knows no law: the words are in `plan::procedures::impact::block`, the laws in
 //! `physics::contact`.
 
+use crate::report::number;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
 use psd_language::check::checker::Checker;
@@ -10,6 +11,7 @@ use psd_plan::Contact;
 use psd_plan::formula::Formula;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::schema::ResultKind;
+use psd_text::units::Dimension;
 
 /// The contact law that a block specifies.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {
@@ -42,7 +44,7 @@ pub(crate) fn with_numbers(contact: &Contact, inputs: &mut Inputs<'_>) -> Result
     let mut numbers = Vec::new();
     for number in contact.numbers() {
         let field = schema::contact_number(contact.name(), number.argument);
-        let value = inputs.in_range(number.input, number.value, field)?;
+        let value = inputs.named(number.input, number.value, field)?;
         numbers.push((number.argument, value));
     }
     let law = ContactLaw::of_numbers(contact.name(), |argument| {
@@ -98,6 +100,31 @@ pub(crate) fn energy(contact: &Contact) -> &'static str {
         "stored in the contact"
     } else {
         "stored and lost in the contact"
+    }
+}
+
+/// The sentence of a report on the contact force of the law, if it needs one.
+pub(crate) fn note(contact: &Contact) -> Option<&'static str> {
+    contact.is_rigid().then_some(
+        "Under the rigid law the contact force is inversely proportional to the time step. Only the impulse is a \
+         property of the impact.",
+    )
+}
+
+/// The restitution that the law implies as the time step goes to zero, from the masses of striker and structure \[kg\].
+pub(crate) fn implied_restitution(contact: &Contact, striker: f64, mass: f64) -> Option<String> {
+    contact.is_rigid().then(|| {
+        let restitution = number::text(striker / (striker + 2.0 * mass), Dimension::NUMBER);
+        format!("a coefficient of restitution e = Ms/(Ms + 2M) = {restitution}")
+    })
+}
+
+/// The energy that the contact took, as it is summed over the steps: from the forces at their ends, or within them.
+pub(crate) const fn work(contact: &Contact) -> &'static str {
+    if contact.needs_tangent() {
+        "contact, ∫F d(Xs − X) within each step"
+    } else {
+        "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step"
     }
 }
 

@@ -3,8 +3,8 @@
 
 use super::check::time_step::time_step_before_the_run;
 use super::{figures, report, results};
-use crate::procedures::facts::{Delay, Facts, Motion, Recorded, Tests};
-use crate::procedures::shake::figures::charts::{entries_of, members_of};
+use crate::procedures::facts::{Delay, Facts, Listed, Motion, Recorded, Tests};
+use crate::procedures::frame::charts::{entries_of, members_of};
 use crate::procedures::stepping;
 use crate::procedures::stepping::self_tested::stepped;
 use crate::procedures::stepping::tracking::{delay as actuator_delay, frame_delay};
@@ -19,8 +19,6 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
     let shared = Facts {
         stepping: Some(&impact.stepping),
         contact: Some(&impact.contact),
-        headline: report::headline(&impact.contact),
-        unprinted: report::unprinted(&impact.contact),
         implied: match impact.until {
             Until::StrikerStop => &[results::CUT],
             _ => &[],
@@ -36,7 +34,6 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
             },
             figures: figures::FIGURES,
             shared_figures: figures::SHARED,
-            unprinted: [shared.unprinted, report::undamped(point)].concat(),
             ..shared
         },
         ImpactTarget::Storey(storey) => Facts {
@@ -48,8 +45,21 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
                 frame: Some(impact.specimen),
             },
             figures: figures::STOREY_FIGURES,
-            headline: report::storey::HEADLINE.to_vec(),
             ..shared
+        },
+    }
+}
+
+pub(crate) fn listed(impact: &Impact) -> Listed {
+    let unprinted = report::unprinted(&impact.contact);
+    match &impact.target {
+        ImpactTarget::Point(point) => Listed {
+            headline: report::headline(&impact.contact),
+            unprinted: [unprinted, report::undamped(point)].concat(),
+        },
+        ImpactTarget::Storey(_) => Listed {
+            headline: report::storey::HEADLINE.to_vec(),
+            unprinted,
         },
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod contact;
 pub(crate) mod facts;
 pub(crate) mod figures;
+pub(crate) mod predicted;
 pub(crate) mod report;
 pub(crate) mod results;
 pub(crate) mod run;

@@ -2,7 +2,7 @@
 //! the order of the reference; for a frame also the peaks of every floor and storey. It moves nothing.
 
 use crate::procedures::common::results::Evaluated;
-use crate::procedures::shake::results::largest_forces;
+use crate::procedures::frame::results::largest_forces;
 use crate::procedures::stepping::energy;
 use crate::procedures::stepping::tracking::{TrackingSummary, tracking_results};
 use crate::run::session::Session;

@@ -6,7 +6,7 @@
 use super::results::{StruckSummary, observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::uncertainty::{RecordedRun, UncertaintyInputs};
-use crate::procedures::shake::results::{drifted_to, observe_drift};
+use crate::procedures::frame::results::{drifted_to, observe_drift};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};

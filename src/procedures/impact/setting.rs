@@ -18,7 +18,6 @@ use psd_plan::schema::methods;
 use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::{Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker};
 use psd_rig::DeclaredNoise;
-use psd_text::units::Dimension;
 
 /// Everything known before the first step.
 pub(crate) struct Setting {
@@ -98,21 +97,16 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         noise: DeclaredNoise,
     ) -> Result<Self, Stop> {
-        let mass = inputs.positive(schema::MASS.name, &point.mass, Dimension::MASS)?;
+        let mass = inputs.number(&schema::MASS, &point.mass)?;
         inputs.also_uncertain(point.mass_uncertainty);
-        let stiffness = inputs.positive_estimate(
-            STIFFNESS.name,
-            &point.stiffness,
-            Dimension::STIFFNESS,
-            None,
-        )?;
+        let stiffness = inputs.estimate(&STIFFNESS, &point.stiffness, None)?;
         let (stiffness, operator_stiffness) = (stiffness.value, upper_end(stiffness));
-        let damping = inputs.damping(schema::DAMPING.name, &point.damping, Dimension::DAMPING)?;
+        let damping = inputs.damping(&schema::DAMPING, &point.damping)?;
         let law = contact::with_numbers(&plan.contact, inputs)?;
         let approach = striker.approach(contact::spring(law));
         let critical = approach.critical_time_step(mass, stiffness);
         let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
-        let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
+        let duration = inputs.number(&methods::DURATION, &plan.duration)?;
         let steps = Steps::evaluate(
             &plan.stepping,
             Times {
@@ -161,7 +155,7 @@ impl Setting {
         let critical = properties.critical_on_impact(target.storey, &approach);
         let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
         stepping::setting::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
-        let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
+        let duration = inputs.number(&methods::DURATION, &plan.duration)?;
         let times = Times {
             time_step,
             critical_time_step: critical,

@@ -2,11 +2,15 @@
 
 use std::ops::Range;
 
-use crate::procedures::shake;
+use crate::procedures::frame;
+use crate::procedures::frame::tables::{
+    FloorRow, computed, forces, joined, positions, rows, spring_shear, storey, tracking,
+    written_rows,
+};
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
-use crate::report::tables::{Table, numeric, written};
+use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
 use psd_physics::structure::substructures::Assemblies;
-use psd_plan::record::{ImpactHistory, ImpactStep, StruckFrame};
+use psd_plan::record::{FloorStep, ImpactHistory, ImpactStep, StruckFrame};
 use psd_plan::schema::{Column, columns};
 
 /// The columns of an impact on one degree of freedom.
@@ -44,10 +48,90 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
     Number(columns::TRACKING_INDICATOR, |step| step.tracking.indicator),
 ];
 
+/// An impact on a storey: the step of the striker, and that of the floors.
+struct StruckStep<'a> {
+    impact: &'a ImpactStep,
+    floors: &'a FloorStep,
+}
+
+/// The columns of an impact on a storey: the striker, and the floors.
+fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
+    let step = vec![
+        Integer(columns::STEP, |row: &FloorRow<'a, StruckStep<'a>>| {
+            row.step.impact.step
+        }),
+        storey(),
+        Number(columns::TIME, |row| row.step.impact.time),
+        Number(columns::WALL_TIME, |row| row.step.impact.wall_time),
+        Text(columns::STATE, |row| row.step.impact.state.name()),
+    ];
+    let striker = vec![
+        Number(
+            columns::STOREY_ENERGY,
+            |row: &FloorRow<'a, StruckStep<'a>>| row.step.floors.storey_energy[row.floor],
+        ),
+        Number(columns::CONTACT_FORCE, |row| row.step.impact.contact_force),
+        Number(columns::STRIKER_DISPLACEMENT, |row| {
+            row.step.impact.striker_displacement
+        }),
+        Number(columns::STRIKER_VELOCITY, |row| {
+            row.step.impact.striker_velocity
+        }),
+        Number(columns::INDENTATION, |row| row.step.impact.indentation),
+        Number(columns::STRIKER_ENERGY, |row| {
+            row.step.impact.energies.striker
+        }),
+        Number(columns::STRUCTURE_ENERGY, |row| {
+            row.step.impact.energies.structure
+        }),
+        Number(columns::RESTORING_ENERGY, |row| {
+            row.step.impact.energies.restoring
+        }),
+        Number(columns::DAMPING_ENERGY, |row| {
+            row.step.impact.energies.damping
+        }),
+        Number(columns::CONTACT_LOSS, |row| {
+            row.step.impact.energies.contact_loss
+        }),
+        Number(columns::INDENTATION_ENERGY, |row| {
+            row.step.impact.energies.indentation
+        }),
+        Number(columns::WEIGHT_WORK, |row| row.step.impact.energies.weight),
+        Number(columns::GRAVITY_ENERGY, |row| {
+            row.step.impact.energies.gravity
+        }),
+        Number(columns::ENERGY_ERROR, |row| row.step.impact.energies.error),
+    ];
+    joined([
+        step,
+        positions(),
+        computed(),
+        forces(),
+        vec![spring_shear()],
+        striker,
+        tracking(),
+    ])
+}
+
+/// The table of an impact on a storey.
+fn storey_impact(
+    steps: &[ImpactStep],
+    floors: &[FloorStep],
+    scaled: Option<&Assemblies>,
+) -> Vec<WrittenColumn> {
+    let steps: Vec<StruckStep<'_>> = floors
+        .iter()
+        .zip(steps)
+        .map(|(floors, impact)| StruckStep { impact, floors })
+        .collect();
+    let rows = rows(steps.iter().map(|step| (step.floors, step)), scaled);
+    written_rows(struck(), &rows, scaled)
+}
+
 /// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
-    let of_floors = shake::tables::columns(shake::tables::struck());
-    let of_elements = numeric(&shake::tables::elements());
+    let of_floors = frame::tables::columns(struck());
+    let of_elements = numeric(&frame::tables::elements());
     [numeric(STEPS), of_floors, of_elements].concat()
 }
 
@@ -57,9 +141,9 @@ pub(crate) fn of_elements<'a>(
     history: &'a ImpactHistory,
     assemblies: Option<Assemblies>,
 ) -> Option<Table<'a>> {
-    let frame = history.frame.as_ref()?;
+    let floors = &history.frame.as_ref()?.floors;
     let number = |step: usize| history.steps[step].step;
-    shake::tables::of_elements(name, &frame.floors, number, assemblies)
+    frame::tables::of_elements(name, floors, number, assemblies)
 }
 
 /// The table under this name.
@@ -76,7 +160,7 @@ pub(crate) fn table(
         .map_or(1, |floors| floors.floors.computed.len());
     let columns = move |range: Range<usize>| {
         let steps = &history.steps[range.clone()];
-        shake::tables::storey_impact(steps, &floors[range], scaled.as_ref())
+        storey_impact(steps, &floors[range], scaled.as_ref())
     };
     Table::of_steps(name, floors.len(), storeys, columns)
 }

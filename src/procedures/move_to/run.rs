@@ -6,8 +6,8 @@ use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use psd_plan::Move;
+use psd_plan::procedures::move_to::block as schema;
 use psd_plan::record::{History, MoveStep};
-use psd_text::units::Dimension;
 
 pub(crate) fn perform(
     plan: &Move,
@@ -29,7 +29,7 @@ fn go(
     session: &mut Session<'_>,
     steps: &mut Vec<MoveStep>,
 ) -> Result<(), Stop> {
-    let to = inputs.number("to", &plan.to, Dimension::LENGTH)?;
+    let to = inputs.number(&schema::TO, &plan.to)?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     for (step, target) in (1..).zip(session.guard.increments_to(&[to])) {
         let moved = session.guard.move_to(&target, speed);

@@ -73,7 +73,7 @@ fn results(plan: &Preload, whole: &Plan, at_the_end: Option<AxialReading>) -> Ve
 }
 
 fn load(plan: &Preload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
-    inputs.positive(schema::FORCE.name, &Constant(plan.force), Dimension::FORCE)?;
+    inputs.number(&schema::FORCE, &Constant(plan.force))?;
     for step in 1..=STEPS {
         let force = plan.force * f64::from(step) / f64::from(STEPS);
         let (reading, stop) = session.load_axially(Some(plan.storey), force)?;

@@ -1,8 +1,8 @@
 //! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
 
 use super::figures;
-use super::figures::charts::{entries_of, members_of};
-use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
+use crate::procedures::facts::{Delay, Facts, Listed, Recorded, Tests};
+use crate::procedures::frame::charts::{entries_of, members_of};
 use crate::procedures::stepping;
 use crate::procedures::stepping::tracking::frame_delay;
 use psd_plan::procedures::shake::block as schema;
@@ -20,6 +20,12 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
         },
         figures: figures::FIGURES,
         shared_figures: figures::SHARED,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn listed() -> Listed {
+    Listed {
         headline: vec![
             schema::MAX_DRIFT.name,
             schema::MAX_BASE_SHEAR.name,
@@ -32,7 +38,6 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
             stepping::report::TRACKING,
         ]
         .concat(),
-        ..Facts::default()
     }
 }
 

@@ -1,37 +1,27 @@
-//! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
-//! energy. In: a plan and a record. Out: blocks.
+//! A frame on moving ground, as a report states it: the ground-motion record, the response, the energy. In: a plan and a record. Out:
+//! blocks.
 
-use super::results::reached;
-use crate::procedures::stepping::energy;
-use crate::report::document::{Block, Column, Table, Text};
-use crate::report::number::percent;
-use crate::report::sections::results::{actuators, budget_table, tracking};
-use crate::report::{Run, number};
-use psd_physics::structure::substructures::Assemblies;
-use psd_physics::structure::{SymmetricBand, storeys_of, widen};
-use psd_plan::procedures::shake::block as schema;
-use psd_plan::procedures::unload::block as unload;
-use psd_plan::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
-use psd_plan::schema::ResultKind;
-use psd_plan::{
-    Element, Frame, Ground, Integrator, Link, Part, ProcedureKind, Shake, ShakeDamping,
+use crate::procedures::frame::report::{
+    element_table, frame_of, integrated, mode_table, noise_note, storey_table,
 };
+use crate::procedures::frame::results::reached;
+use crate::procedures::stepping::energy;
+use crate::report::document::Block;
+use crate::report::sections::results::{actuators, tracking};
+use crate::report::{Run, number};
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::{Floors, ProcedureRecord, ShakeHistory};
+use psd_plan::{Ground, Shake};
 use psd_text::units::Dimension;
-use psd_text::units::display::significant;
 
 /// The blocks below the results of a ground-motion test: its integration, the modes, the storeys, the energy.
-pub(crate) fn shaken(
+pub(crate) fn report(
     run: &Run<'_>,
-    index: usize,
+    shake: &Shake,
     procedure: &ProcedureRecord,
     history: &ShakeHistory,
     body: &mut Vec<Block>,
 ) {
-    let Some(ProcedureKind::Shake(shake)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
     let Some(modes) = &history.modes else { return };
     body.push(Block::paragraph(
         integration(run, shake, procedure, history).join(" "),
@@ -50,20 +40,6 @@ pub(crate) fn shaken(
         body.extend(tracking::table(procedure, frame));
         body.push(energy_balance(history));
     }
-}
-
-/// Why the result of the base shear is smaller than the largest reading of the table; None without noise.
-pub(crate) fn noise_note<S: Floors>(run: &Run<'_>, steps: &[S]) -> Option<Block> {
-    let noise = match &run.plan.rig.link {
-        Link::Virtual(link) => link.noise,
-        Link::Real(link) => link.readings.noise,
-    };
-    let note = if steps.last().is_some_and(S::has_elements) {
-        "Max base shear and the peak forces are the largest readings minus their part due to noise."
-    } else {
-        "Max base shear is the largest reading minus its part due to noise."
-    };
-    (noise > 0.0).then(|| Block::note(note))
 }
 
 /// The integration of the frame, and the ground motion on it.
@@ -114,67 +90,6 @@ fn integration(
     sentences
 }
 
-/// The frame that a procedure tests.
-pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> {
-    run.plan.specimens.get(specimen)?.frame.as_ref()
-}
-
-/// Whether the stiffness is that of storeys or elements, each of which shows its own as it moves.
-fn has_tangents(frame: &Frame) -> bool {
-    if !frame.elements.is_empty() {
-        return true;
-    }
-    SymmetricBand::from_dense(&frame.stiffness)
-        .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
-}
-
-/// The integration of a frame, its damping and its weights.
-pub(crate) fn integrated(
-    frame: Option<&Frame>,
-    integrator: Integrator,
-    damping: &ShakeDamping,
-    ratios: &[f64],
-) -> String {
-    let integrator = match integrator {
-        Integrator::Tangent if frame.is_some_and(|frame| !has_tangents(frame)) => {
-            "constant average acceleration with the initial stiffness matrix".to_owned()
-        }
-        Integrator::Tangent => {
-            "constant average acceleration with the measured tangent stiffness".to_owned()
-        }
-        Integrator::Explicit => "explicit Newmark".to_owned(),
-        Integrator::AlphaOs { alpha } => {
-            format!(
-                "α-operator splitting with the initial stiffness, α = {}",
-                number::stated(alpha, Dimension::NUMBER)
-            )
-        }
-    };
-    let damping = match (damping, ratios.iter().any(|ratio| *ratio != 0.0)) {
-        (_, false) => "No computed damping.",
-        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
-        (ShakeDamping::Modal(_), true) => "Each mode has a separate damping ratio.",
-    };
-    let p_delta = frame.map_or("", p_delta);
-    format!("Integrated by {integrator}. {damping}{p_delta}")
-}
-
-/// Where the P-Δ of the storeys comes from: the weights in the computer, or the axial load of the rig in its reading.
-fn p_delta(frame: &Frame) -> &'static str {
-    match (frame.has_axial_load(), frame.computes_p_delta()) {
-        (false, false) => "",
-        (false, true) => {
-            " P-Δ was computed from the weights of the floors; none was in the reading of the rig. Base shear is net of P-Δ."
-        }
-        (true, false) => {
-            " P-Δ was in the reading of the rig, by the axial load on the specimen; none was computed. Base shear is net of P-Δ."
-        }
-        (true, true) => {
-            " P-Δ was in part in the reading of the rig, by the axial load on the specimen; the rest was computed from the weights of the floors. Base shear is net of P-Δ."
-        }
-    }
-}
-
 /// Largest acceleration as applied beside that of the record over the same time and with the same factor.
 fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
     let applied = history
@@ -188,333 +103,6 @@ fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
         text(applied),
         text(ground.peak())
     )
-}
-
-pub(crate) fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
-    let columns = vec![
-        Column::numbers("Mode"),
-        Column::numbers("Period"),
-        Column::numbers("Damping ratio"),
-        Column::numbers("Effective mass"),
-        Column::words("Shape, from the lowest floor up", 1),
-    ];
-    let row = |mode: usize| -> Vec<Text> {
-        let shape: Vec<String> = modes.shapes[mode]
-            .iter()
-            .map(|entry| psd_text::units::display::minus(&significant(*entry, 4)))
-            .collect();
-        vec![
-            (mode + 1).to_string().into(),
-            number::text(modes.periods[mode], Dimension::TIME).into(),
-            percent(ratios.get(mode).copied().unwrap_or(0.0)).into(),
-            percent(modes.effective_mass[mode]).into(),
-            shape.join("  ").into(),
-        ]
-    };
-    Block::Table(Table {
-        columns,
-        rows: (0..modes.periods.len()).map(row).collect(),
-    })
-}
-
-/// One row a storey, from the ground up; `displacement` names the result with the floors' largest.
-pub(crate) fn storey_table<S: Floors>(
-    procedure: &ProcedureRecord,
-    steps: &[S],
-    frame: Option<&Frame>,
-    displacement: ResultKind,
-) -> Block {
-    let shear = largest(steps, S::shear);
-    let net = largest(steps, S::net_shear);
-    let weighs = steps.last().is_some_and(S::weighs);
-    let whole = |values: &[f64]| {
-        values
-            .iter()
-            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
-    };
-    let drift = procedure.list(schema::MAX_DRIFT.name).unwrap_or_default();
-    let cell = |kind: ResultKind, storey: usize| cell(procedure, kind, storey);
-    let with_u = |title: &str, kind: ResultKind| with_u(procedure, title, kind);
-    // A frame of matrices with elements is no stack of storeys: its elements have a table.
-    if steps.last().is_some_and(S::has_elements) {
-        let row = |degree: usize| vec![(degree + 1).to_string().into(), cell(displacement, degree)];
-        let degrees = steps.last().map_or(0, |step| step.computed().len());
-        return Block::Table(Table {
-            columns: vec![
-                Column::words("Degree of freedom", 1),
-                with_u("Peak displacement", displacement),
-            ],
-            rows: (0..degrees).map(row).collect(),
-        });
-    }
-    let mut columns = vec![
-        Column::words("Storey", 1),
-        with_u("Peak floor displacement", displacement),
-        with_u("Peak drift", schema::MAX_DRIFT),
-        Column::numbers("Over height"),
-        with_u("Final drift", schema::FINAL_DRIFT),
-        Column::numbers(if frame.and_then(Assemblies::of).is_some() {
-            "Peak shear"
-        } else {
-            "Peak shear as read"
-        }),
-    ];
-    columns.extend(weighs.then(|| Column::numbers("Net of P-Δ")));
-    let height = |storey: usize| {
-        frame
-            .and_then(|frame| frame.storeys.get(storey))
-            .and_then(|storey| storey.height)
-    };
-    let row = |storey: usize| -> Vec<Text> {
-        let ratio = height(storey)
-            .zip(drift.get(storey))
-            .map(|(height, drift)| percent(drift / height));
-        let force = |shear: &[f64]| {
-            number::text_beside(shear[storey], whole(shear), Dimension::FORCE).into()
-        };
-        let mut cells = vec![
-            (storey + 1).to_string().into(),
-            cell(displacement, storey),
-            cell(schema::MAX_DRIFT, storey),
-            ratio.unwrap_or_else(|| "—".to_owned()).into(),
-            cell(schema::FINAL_DRIFT, storey),
-            force(&shear),
-        ];
-        cells.extend(weighs.then(|| force(&net)));
-        cells
-    };
-    Block::Table(Table {
-        columns,
-        rows: (0..shear.len()).map(row).collect(),
-    })
-}
-
-/// One row an element of a frame of matrices; None without elements.
-pub(crate) fn element_table<S: Floors>(procedure: &ProcedureRecord, steps: &[S]) -> Option<Block> {
-    let elements = steps.last()?.elements().len();
-    let results = [
-        ("Peak deformation", schema::MAX_DRIFT),
-        ("Final deformation", schema::FINAL_DRIFT),
-        ("Peak force", schema::MAX_ELEMENT_FORCE),
-    ];
-    let row = |element: usize| {
-        let cells = results.map(|(_, kind)| cell(procedure, kind, element));
-        std::iter::once((element + 1).to_string().into())
-            .chain(cells)
-            .collect()
-    };
-    let columns = results.map(|(title, kind)| with_u(procedure, title, kind));
-    (elements > 0).then(|| {
-        Block::Table(Table {
-            columns: std::iter::once(Column::words("Element", 1))
-                .chain(columns)
-                .collect(),
-            rows: (0..elements).map(row).collect(),
-        })
-    })
-}
-
-/// An entry of a result, or a dash without it.
-fn cell(procedure: &ProcedureRecord, kind: ResultKind, index: usize) -> Text {
-    procedure
-        .result(kind.name)
-        .map_or_else(|| "—".into(), |result| entry(result, index))
-}
-
-/// A column of a result, whose title says whether its standard uncertainty is beside it.
-fn with_u(procedure: &ProcedureRecord, title: &str, kind: ResultKind) -> Column {
-    let known = procedure
-        .result(kind.name)
-        .is_some_and(|result| !result.contributions.is_empty());
-    Column::numbers(if known {
-        format!("{title} (u)")
-    } else {
-        title.to_owned()
-    })
-}
-
-/// An entry of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the largest.
-pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
-    let values = result.value.list().unwrap_or_default();
-    let Some(value) = values.get(index) else {
-        return "—".into();
-    };
-    if let Some(Some(u)) = result.entry_uncertainties().get(index) {
-        let mark = if budget_table::is_reliable(result, index) {
-            ""
-        } else {
-            budget_table::MARK
-        };
-        return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
-    }
-    let whole = values
-        .iter()
-        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    number::text_beside(*value, whole, result.dimension).into()
-}
-
-/// The same where its uncertainty is known.
-pub(crate) fn known_entry(
-    procedure: &ProcedureRecord,
-    kind: ResultKind,
-    index: usize,
-) -> Option<Text> {
-    let result = procedure.result(kind.name)?;
-    result
-        .entry_uncertainties()
-        .get(index)
-        .copied()
-        .flatten()
-        .map(|_| entry(result, index))
-}
-
-/// The blocks below the results of a frame that was unloaded: the storeys at zero restoring force, with their permanent drifts.
-pub(crate) fn unloaded(
-    run: &Run<'_>,
-    index: usize,
-    procedure: &ProcedureRecord,
-    steps: &[UnloadStep],
-    body: &mut Vec<Block>,
-) {
-    let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
-        return;
-    };
-    let specimen = run
-        .plan
-        .procedures
-        .get(index)
-        .and_then(|planned| planned.kind.specimen());
-    let frame = specimen.and_then(|specimen| frame_of(run, specimen));
-    let moves = steps.len() - 1;
-    let by = if frame.is_some_and(|frame| !has_tangents(frame)) {
-        "each with the initial stiffness matrix"
-    } else {
-        "each with the storey stiffnesses last measured"
-    };
-    body.push(Block::paragraph(format!(
-        "All floors moved together to zero restoring force, in {moves} {}, {by}.",
-        if moves == 1 { "move" } else { "moves" }
-    )));
-    let whole = |values: &[f64]| {
-        values
-            .iter()
-            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
-    };
-    let (before, drift) = (first.drift(), last.drift());
-    let (loaded, left) = (first.shear(), last.shear());
-    let travel = whole(&before).max(whole(&drift));
-    let columns = vec![
-        Column::words("Storey", 1),
-        Column::numbers("Unloaded floor position"),
-        Column::numbers("Drift before"),
-        Column::numbers("Residual drift"),
-        Column::numbers("Over height"),
-        Column::numbers("Shear before"),
-        Column::numbers("Remaining shear"),
-    ];
-    let height = |storey: usize| {
-        frame
-            .and_then(|frame| frame.storeys.get(storey))
-            .and_then(|storey| storey.height)
-    };
-    let row = |storey: usize| -> Vec<Text> {
-        let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
-        let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
-        let known = |kind: ResultKind, other: String| {
-            known_entry(procedure, kind, storey).unwrap_or_else(|| other.into())
-        };
-        vec![
-            (storey + 1).to_string().into(),
-            known(
-                unload::FLOOR_DISPLACEMENT,
-                length(
-                    last.displacement[storey],
-                    whole(&last.displacement).max(travel),
-                ),
-            ),
-            length(before[storey], travel).into(),
-            known(unload::RESIDUAL_DRIFT, length(drift[storey], travel)),
-            height(storey)
-                .map_or_else(|| "—".to_owned(), |height| percent(drift[storey] / height))
-                .into(),
-            force(loaded[storey]).into(),
-            known(unload::RESIDUAL_SHEAR, force(left[storey])),
-        ]
-    };
-    body.push(Block::Table(Table {
-        columns,
-        rows: (0..drift.len()).map(row).collect(),
-    }));
-}
-
-/// The same of the elements of a frame of matrices.
-pub(crate) fn unloaded_elements(
-    run: &Run<'_>,
-    procedure: &ProcedureRecord,
-    steps: &[UnloadStep],
-    body: &mut Vec<Block>,
-) {
-    let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
-        return;
-    };
-    let moves = steps.len() - 1;
-    let frame = run.plan.frame_on_the_rig();
-    let is_computed = |element: &Element| element.part == Part::Computed;
-    let computed = if frame.is_some_and(|frame| frame.elements.iter().any(is_computed)) {
-        " The rig alone moved: a computed element is at the deformation at which its model has no force."
-    } else {
-        ""
-    };
-    body.push(Block::paragraph(format!(
-        "The axes of all tested elements moved together to zero force, in {moves} {}, each with the stiffness last measured.{computed}",
-        if moves == 1 { "move" } else { "moves" }
-    )));
-    let whole = |values: &[f64]| {
-        values
-            .iter()
-            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
-    };
-    let travel = whole(&first.displacement).max(whole(&last.displacement));
-    let loaded = whole(&first.restoring_force);
-    let columns = vec![
-        Column::words("Element", 1),
-        Column::numbers("Deformation before"),
-        Column::numbers("Residual deformation"),
-        Column::numbers("Force before"),
-        Column::numbers("Remaining force"),
-    ];
-    let row = |element: usize| -> Vec<Text> {
-        let length = |step: &UnloadStep| {
-            number::part_of(step.displacement[element], travel, 4, Dimension::LENGTH)
-        };
-        let force = |step: &UnloadStep| {
-            number::part_of(step.restoring_force[element], loaded, 4, Dimension::FORCE)
-        };
-        let known = |kind: ResultKind, other: String| {
-            known_entry(procedure, kind, element).unwrap_or_else(|| other.into())
-        };
-        vec![
-            (element + 1).to_string().into(),
-            length(first).into(),
-            known(unload::RESIDUAL_DRIFT, length(last)),
-            force(first).into(),
-            known(unload::RESIDUAL_SHEAR, force(last)),
-        ]
-    };
-    body.push(Block::Table(Table {
-        columns,
-        rows: (0..last.displacement.len()).map(row).collect(),
-    }));
-}
-
-fn largest<S>(steps: &[S], read: impl Fn(&S) -> Vec<f64>) -> Vec<f64> {
-    let mut largest: Vec<f64> = Vec::new();
-    for step in steps {
-        let values = read(step);
-        largest.resize(values.len(), 0.0);
-        widen(&mut largest, &values);
-    }
-    largest
 }
 
 /// The input energy of the ground motion, and its parts at the end.
@@ -537,34 +125,4 @@ fn energy_balance(history: &ShakeHistory) -> Block {
         "input, −∫Mι üg dX"
     };
     energy::balance_table((name, e.input + e.gravity), &parts)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use psd_plan::{Behaviour, Storey};
-
-    #[test]
-    fn the_report_says_where_the_p_delta_comes_from() {
-        let storey = |gravity, axial_load| Storey {
-            height: Some(3.0),
-            gravity,
-            axial_load,
-            ..Storey::new(1e4, 1e6, Behaviour::Elastic { stiffness: 1e6 })
-        };
-        let said = |gravity, axial_load| {
-            let text = p_delta(&Frame::of_storeys(vec![storey(gravity, axial_load)]));
-            [
-                "none was in the reading",
-                "none was computed",
-                "the rest was",
-            ]
-            .map(|words| text.contains(words))
-        };
-        assert_eq!(said(0.0, 0.0), [false; 3]);
-        assert_eq!(said(1e5, 0.0), [true, false, false]);
-        assert_eq!(said(1e5, 1e5), [false, true, false]);
-        assert_eq!(said(0.0, 1e5), [false, true, false]);
-        assert_eq!(said(1e5, 4e4), [false, false, true]);
-    }
 }

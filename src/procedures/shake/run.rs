@@ -2,11 +2,12 @@
 //! floor. In: a frame, a ground motion, a time step, each inside its domain. Out: every step, and the results that follow from them. The
 //! steps themselves are in `steps`.
 
-use super::results::{ShakeSummary, drifted_to, observe_drift, results};
+use super::results::{ShakeSummary, results};
 use super::setting::Setting;
 use super::steps::Shaking;
 use super::uncertainty::{self, ShakeUncertainty};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
+use crate::procedures::frame::results::{drifted_to, observe_drift};
 use crate::procedures::stepping::energy::observe_imbalance;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::setting::{FrameSteps, above_critical, frame_of};

@@ -11,7 +11,6 @@ use psd_plan::formula::Formula;
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::schema::methods;
 use psd_plan::{Frame, Ground, Shake};
-use psd_text::units::Dimension;
 
 /// Everything known before the first step.
 pub(crate) struct Setting {
@@ -35,12 +34,11 @@ impl Setting {
         let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
         stepping::setting::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
         let to_the_end = Formula::Constant(ground.duration());
-        let duration = inputs.positive(
-            methods::DURATION.name,
+        let duration = inputs.number(
+            &methods::DURATION,
             plan.duration.as_ref().unwrap_or(&to_the_end),
-            Dimension::TIME,
         )?;
-        let scale = inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?;
+        let scale = inputs.number(&schema::SCALE, &plan.scale)?;
         let times = Times {
             time_step,
             critical_time_step: critical,

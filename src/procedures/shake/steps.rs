@@ -1,8 +1,9 @@
 //! The steps of a frame on moving ground: the ground as a load, and every step kept. In: the setting before the first step. Out: the
 //! history and its summary. `step_loop` takes the steps on the rig; the equations are in `physics`.
 
-use super::results::{ShakeSummary, drifted_to};
+use super::results::ShakeSummary;
 use super::setting::Setting;
+use crate::procedures::frame::results::drifted_to;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{Start, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};

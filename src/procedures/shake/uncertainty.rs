@@ -19,7 +19,6 @@ use psd_plan::record::{NamedResult, ShakeHistory};
 use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
 use psd_plan::uncertainty::{Refinement, Source};
 use psd_plan::{Ground, Shake};
-use psd_text::units::Dimension;
 
 /// Steps of the finest run for each of the record.
 const FINEST: u8 = Refinement::Quarter.finer();
@@ -182,10 +181,7 @@ impl Evaluate for RecordedShake<'_, '_> {
         );
         let (properties, scale) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
             let properties = stepping::setting::properties(&frame, &damping, inputs)?;
-            Ok((
-                properties,
-                inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?,
-            ))
+            Ok((properties, inputs.number(&schema::SCALE, &plan.scale)?))
         })?;
         let source = Source::GroundScale(plan.ground);
         let by: f64 = shifts

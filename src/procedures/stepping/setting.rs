@@ -58,12 +58,9 @@ impl Steps {
             critical_time_step,
             duration,
         } = times;
-        let pause = inputs.not_negative(methods::PAUSE.name, &plan.pause, Dimension::TIME)?;
-        let max_tangent_ratio = inputs.positive(
-            methods::MAX_TANGENT_RATIO.name,
-            &plan.max_tangent_ratio,
-            Dimension::NUMBER,
-        )?;
+        let pause = inputs.number(&methods::PAUSE, &plan.pause)?;
+        let max_tangent_ratio =
+            inputs.number(&methods::MAX_TANGENT_RATIO, &plan.max_tangent_ratio)?;
         check_one_step(time_step, duration)?;
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
         let axes = axes as f64;
@@ -208,12 +205,11 @@ fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64
     };
     Ok(match plan {
         ShakeDamping::Rayleigh(ratio) => {
-            let ratio =
-                known(inputs.damping(frames::DAMPING_RATIO.name, ratio, Dimension::NUMBER)?)?;
+            let ratio = known(inputs.damping(&frames::DAMPING_RATIO, ratio)?)?;
             (rayleigh(ratio), ratio)
         }
         ShakeDamping::Modal(ratios) => {
-            let ratios = inputs.list(frames::DAMPING_RATIO.name, ratios)?;
+            let ratios = inputs.list(&frames::DAMPING_RATIO, ratios)?;
             let ratios = ratios
                 .into_iter()
                 .map(known)
@@ -230,12 +226,7 @@ pub(crate) fn time_step(
     critical: f64,
     inputs: &mut Inputs<'_>,
 ) -> Result<f64, Stop> {
-    let time_step = inputs.positive_estimate(
-        methods::TIME_STEP.name,
-        &plan.time_step,
-        Dimension::TIME,
-        Some(critical),
-    )?;
+    let time_step = inputs.estimate(&methods::TIME_STEP, &plan.time_step, Some(critical))?;
     Ok(time_step.value)
 }
 

@@ -253,7 +253,7 @@ impl EnergyWatch {
 
 /// Delay of the actuators of a rig to first order, in simulated time \[s\]. An undershoot t of each increment gives Δt·t/(1 − t). A lag τ
 /// gives the part that remains after a pause, or in continuous mode τ over the time scale.
-pub fn delay(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
+pub(crate) fn delay(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     let Link::Virtual(VirtualLink {
         tracking: short,
         lag,

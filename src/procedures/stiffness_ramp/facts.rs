@@ -1,7 +1,7 @@
 //! The facts about a stiffness ramp that check and report need without running it. In: the ramp. Out: facts.
 
 use super::{figures, report};
-use crate::procedures::facts::{Facts, Recorded};
+use crate::procedures::facts::{Facts, Listed, Recorded};
 use psd_physics::self_test::SelfTestPart;
 use psd_plan::procedures::stiffness_ramp::block as schema;
 use psd_plan::record::StiffnessRampHistory;
@@ -10,6 +10,12 @@ use psd_plan::{RampFit, StiffnessRamp};
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: figures::FIGURES,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn listed() -> Listed {
+    Listed {
         headline: vec![
             schema::STIFFNESS.name,
             schema::YIELD_FORCE.name,
@@ -17,7 +23,7 @@ pub(crate) fn facts() -> Facts<'static> {
             schema::TIME_CONSTANT.name,
             schema::MAX_FORCE.name,
         ],
-        ..Facts::default()
+        ..Listed::default()
     }
 }
 

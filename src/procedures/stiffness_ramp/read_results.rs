@@ -10,6 +10,7 @@ use psd_plan::formula::Formula;
 use psd_plan::procedures::stiffness_ramp::block as schema;
 use psd_plan::uncertainty::FEW;
 use psd_plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
+use psd_text::count::counted;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::display::significant;
@@ -83,11 +84,7 @@ impl Violation for FewDegreesOfFreedom<'_> {
         } = self;
         #[expect(clippy::cast_precision_loss, reason = "a few")]
         let factor = significant(coverage(degrees as f64), 3);
-        let freedom = if degrees == 1 {
-            "1 degree of freedom".to_owned()
-        } else {
-            format!("{degrees} degrees of freedom")
-        };
+        let freedom = counted(degrees, "degree of freedom", "degrees of freedom");
         let text = format!(
             "uncertainty is large: {points} steps leave {freedom} in the fit of `{ramp}`, U = {factor} × standard error"
         );
@@ -170,13 +167,7 @@ fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
         RampFit::Multilinear(BreakCount::Exactly(breaks)) => (steps, 3 * (breaks + 1) + 1),
         RampFit::Multilinear(BreakCount::ByCriterion { .. }) => (steps, 4),
     };
-    let count = |points: usize| {
-        if points == 1 {
-            "1 step".to_owned()
-        } else {
-            format!("{points} steps")
-        }
-    };
+    let count = |points: usize| counted(points, "step", "steps");
     if points < wanted {
         let verb = if points == 1 { "is" } else { "are" };
         let lacks = format!(

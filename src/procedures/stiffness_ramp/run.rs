@@ -20,7 +20,6 @@ use psd_plan::record::{
 };
 use psd_plan::uncertainty::InstrumentUncertainty;
 use psd_plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
-use psd_text::units::Dimension;
 
 pub(crate) fn perform(
     plan: &StiffnessRamp,
@@ -166,10 +165,10 @@ impl Ramp {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let displacements = inputs.list(schema::DISPLACEMENTS.name, &plan.displacements)?;
+        let displacements = inputs.list(&schema::DISPLACEMENTS, &plan.displacements)?;
         let manner = Manner {
             samples: plan.samples,
-            pause: inputs.not_negative(schema::PAUSE.name, &plan.pause, Dimension::TIME)?,
+            pause: inputs.number(&schema::PAUSE, &plan.pause)?,
             speed: inputs.speed(plan.speed.as_ref())?,
         };
         let home = session.commanded();

@@ -1,16 +1,16 @@
 //! The facts about an unloading that the drivers of check and report need without carrying it out. In: an unloading of the plan.
 //! Out: facts.
 
-use crate::procedures::facts::{Facts, Leaves, Recorded, Tests};
-use crate::procedures::shake::figures;
-use crate::procedures::shake::figures::charts::{entries_of, members_of};
+use super::figures;
+use crate::procedures::facts::{Facts, Leaves, Listed, Recorded, Tests};
+use crate::procedures::frame::charts::{entries_of, members_of};
 use psd_plan::procedures::unload::block as schema;
+use psd_plan::record::Unloaded;
 use psd_plan::{Specimen, Unload};
 
 pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     let shared = Facts {
         unloads: true,
-        headline: vec![schema::RESIDUAL_DISPLACEMENT.name],
         ..Facts::default()
     };
     if unload.stiffness.is_some() {
@@ -18,9 +18,19 @@ pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     }
     Facts {
         tests: Tests::Frame,
-        figures: figures::UNLOADING_FIGURES,
-        headline: vec![schema::RESIDUAL_DRIFT.name],
+        figures: figures::FIGURES,
         ..shared
+    }
+}
+
+pub(crate) fn listed(unload: &Unload) -> Listed {
+    let headline = match unload.stiffness {
+        Some(_) => schema::RESIDUAL_DISPLACEMENT,
+        None => schema::RESIDUAL_DRIFT,
+    };
+    Listed {
+        headline: vec![headline.name],
+        ..Listed::default()
     }
 }
 
@@ -44,17 +54,18 @@ pub(crate) fn leaves(unload: &Unload, specimens: &[Option<Specimen>]) -> Leaves<
     }
 }
 
-pub(crate) fn recorded_frame() -> Recorded {
-    Recorded {
+pub(crate) fn recorded(of: Unloaded) -> Recorded {
+    let frame = Recorded {
         lists_are_tabled: true,
         entries: entries_of(false),
         ..Recorded::default()
-    }
-}
-
-pub(crate) fn recorded_elements() -> Recorded {
-    Recorded {
-        members: members_of(true),
-        ..recorded_frame()
+    };
+    match of {
+        Unloaded::OneAxis => Recorded::default(),
+        Unloaded::Floors => frame,
+        Unloaded::Elements => Recorded {
+            members: members_of(true),
+            ..frame
+        },
     }
 }

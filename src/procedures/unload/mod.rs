@@ -3,6 +3,8 @@
 
 pub(crate) mod check;
 pub(crate) mod facts;
+pub(crate) mod figures;
+pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;

@@ -15,7 +15,9 @@ use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::on_the_rig;
 use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use psd_plan::procedures::unload::block as schema;
-use psd_plan::record::{EventKind, History, NamedResult, Rest, UnloadStep};
+use psd_plan::record::{
+    EventKind, History, NamedResult, Rest, UnloadHistory, UnloadStep, Unloaded,
+};
 use psd_plan::schema::ResultKind;
 use psd_plan::schema::procedures::SPECIMEN;
 use psd_plan::schema::procedures::STIFFNESS;
@@ -41,17 +43,17 @@ pub(crate) fn perform(
     let mut steps = Vec::new();
     let outcome = unload(plan, whole, inputs, session, &mut steps);
     let rest = outcome.as_ref().ok();
-    let (history, results) = match plan.stiffness {
-        // The start is not a move.
-        Some(_) => (
-            History::Unload(steps.into_iter().skip(1).collect()),
-            of_farthest(rest),
-        ),
-        None if has_elements(whole) => (History::ElementUnload(steps), element_results(rest)),
-        None => (History::FrameUnload(steps), frame_results(rest)),
+    let (of, results) = match plan.stiffness {
+        Some(_) => (Unloaded::OneAxis, of_farthest(rest)),
+        None if has_elements(whole) => (Unloaded::Elements, element_results(rest)),
+        None => (Unloaded::Floors, frame_results(rest)),
     };
+    if of == Unloaded::OneAxis && !steps.is_empty() {
+        // The start is not a move.
+        steps.remove(0);
+    }
     Performed {
-        history,
+        history: History::Unload(UnloadHistory { of, steps }),
         results,
         stop: outcome.err(),
     }
@@ -160,15 +162,13 @@ fn unload(
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
     let unloading = match &plan.stiffness {
-        Some(stiffness) => {
-            Unloading::of_one(inputs.positive(STIFFNESS.name, stiffness, Dimension::STIFFNESS)?)
-        }
+        Some(stiffness) => Unloading::of_one(inputs.number(&STIFFNESS, stiffness)?),
         None => of_frame(frame_of(whole, plan.specimen)?)?,
     };
     let within = plan
         .within
         .as_ref()
-        .map(|within| inputs.positive(schema::WITHIN.name, within, Dimension::FORCE))
+        .map(|within| inputs.number(&schema::WITHIN, within))
         .transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;

@@ -1,10 +1,13 @@
 //! The table of an unloading: a row a move of one degree of freedom, or a row a floor or an element of a frame. In: steps. Out: columns.
 
-use crate::procedures::shake;
+use crate::procedures::frame;
+use crate::procedures::frame::tables::{
+    FloorRow, forces, joined, positions, storey, written_steps,
+};
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
 use psd_physics::structure::substructures::Assemblies;
-use psd_plan::record::UnloadStep;
+use psd_plan::record::{UnloadHistory, UnloadStep, Unloaded};
 use psd_plan::schema::{Column, columns};
 
 /// The columns of the moves of one degree of freedom.
@@ -17,6 +20,27 @@ const MOVES: &[TableColumn<UnloadStep>] = &[
     Optional(columns::TANGENT_STIFFNESS, |step| step.tangent_stiffness[0]),
 ];
 
+/// The columns of the floors of a frame.
+fn unloaded<'a>() -> Vec<TableColumn<FloorRow<'a, UnloadStep>>> {
+    let step = vec![
+        Integer(columns::STEP, |row: &FloorRow<'a, UnloadStep>| {
+            row.step.step
+        }),
+        storey(),
+        Number(columns::WALL_TIME, |row| row.step.wall_time),
+    ];
+    let tangents = vec![Optional(
+        columns::TANGENT_STIFFNESS,
+        |row: &FloorRow<'a, UnloadStep>| row.step.tangent_stiffness[row.floor],
+    )];
+    joined([step, positions(), forces(), tangents])
+}
+
+/// The table of the floors of a frame; step 0 is the start of the unloading.
+pub(crate) fn unloading(steps: &[UnloadStep], scaled: Option<&Assemblies>) -> Vec<WrittenColumn> {
+    written_steps(unloaded(), steps, scaled)
+}
+
 /// An element of a frame of matrices after a move.
 struct ElementRow<'a> {
     step: &'a UnloadStep,
@@ -25,7 +49,7 @@ struct ElementRow<'a> {
     on_the_rig: Option<[f64; 3]>,
 }
 
-impl shake::tables::OnTheRig for ElementRow<'_> {
+impl frame::tables::OnTheRig for ElementRow<'_> {
     fn on_the_rig(&self) -> Option<[f64; 3]> {
         self.on_the_rig
     }
@@ -49,29 +73,32 @@ fn elements<'a>(is_scaled: bool) -> Vec<TableColumn<ElementRow<'a>>> {
         }),
     ];
     if is_scaled {
-        columns.extend(shake::tables::on_the_rig());
+        columns.extend(frame::tables::on_the_rig());
     }
     columns
 }
 
 /// The numeric columns of all tables.
 pub(crate) fn columns() -> Vec<Column> {
-    let of_floors = shake::tables::columns(shake::tables::unloaded());
+    let of_floors = frame::tables::columns(unloaded());
     [numeric(MOVES), of_floors, numeric(&elements(true))].concat()
 }
 
-/// The table of the elements of a frame of matrices, under this name.
-pub(crate) fn of_elements(
+/// The table of an unloading, under this name.
+pub(crate) fn table(
     name: String,
-    steps: &[UnloadStep],
+    history: &UnloadHistory,
     scaled: Option<Assemblies>,
 ) -> Table<'_> {
-    Table::of(name, steps, move |steps| {
-        elements_written(steps, scaled.as_ref())
+    let of = history.of;
+    Table::of(name, &history.steps, move |steps| match of {
+        Unloaded::OneAxis => written(MOVES, steps),
+        Unloaded::Floors => unloading(steps, scaled.as_ref()),
+        Unloaded::Elements => elements_written(steps, scaled.as_ref()),
     })
 }
 
-/// The columns of that table; step 0 is the start of the unloading.
+/// The table of the elements of a frame of matrices; step 0 is the start of the unloading.
 pub(crate) fn elements_written(
     steps: &[UnloadStep],
     scaled: Option<&Assemblies>,
@@ -95,20 +122,4 @@ pub(crate) fn elements_written(
         on_the_rig.into_iter().enumerate().map(row)
     });
     written(&elements(scaled.is_some()), &rows.collect::<Vec<_>>())
-}
-
-/// The table of the moves of one degree of freedom, under this name.
-pub(crate) fn of_moves(name: String, steps: &[UnloadStep]) -> Table<'_> {
-    Table::of(name, steps, |steps| written(MOVES, steps))
-}
-
-/// The table of the floors of a frame, under this name.
-pub(crate) fn of_floors(
-    name: String,
-    steps: &[UnloadStep],
-    scaled: Option<Assemblies>,
-) -> Table<'_> {
-    Table::of(name, steps, move |steps| {
-        shake::tables::unloading(steps, scaled.as_ref())
-    })
 }

@@ -1,17 +1,18 @@
 //! A vector drawing as PNG, with two pixels for each reference pixel, which is 192 dpi. In: SVG. Out: PNG bytes. The letters are those of the
 //! fonts in the program.
 
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::sync::{Arc, LazyLock};
 
-use resvg::tiny_skia::{Color, Pixmap, Transform};
+use resvg::tiny_skia::{Color, PixmapMut, PixmapRef, Transform};
 use resvg::usvg::fontdb::{Database, Source};
 use resvg::usvg::{Options, Tree};
 
 use super::super::document::fonts::{SANS, SANS_BOLD};
 
 /// Pixels per reference pixel, in each direction.
-const PIXELS: u16 = 2;
+const SCALE: u16 = 2;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
@@ -22,6 +23,11 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     }
     Arc::new(fonts)
 });
+
+thread_local! {
+    /// The pixels of the last sheet of this thread: the system would give new memory page by page.
+    static PIXELS: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
 
 /// The drawing on a white sheet.
 ///
@@ -36,20 +42,25 @@ pub(crate) fn png(svg: &str) -> Result<Vec<u8>, String> {
     let size = drawing
         .size()
         .to_int_size()
-        .scale_by(f32::from(PIXELS))
+        .scale_by(f32::from(SCALE))
         .ok_or("a sheet without an area")?;
-    let mut sheet = Pixmap::new(size.width(), size.height()).ok_or("a sheet without an area")?;
-    sheet.fill(Color::WHITE);
-    let scale = Transform::from_scale(f32::from(PIXELS), f32::from(PIXELS));
-    resvg::render(&drawing, scale, &mut sheet.as_mut());
-    encoded(&sheet).map_err(error_text)
+    let bytes = 4 * size.width() as usize * size.height() as usize;
+    let scale = Transform::from_scale(f32::from(SCALE), f32::from(SCALE));
+    PIXELS.with_borrow_mut(|pixels| {
+        pixels.resize(bytes, 0);
+        let mut sheet = PixmapMut::from_bytes(pixels, size.width(), size.height())
+            .ok_or("a sheet without an area")?;
+        sheet.fill(Color::WHITE);
+        resvg::render(&drawing, scale, &mut sheet);
+        encoded(sheet.as_ref()).map_err(error_text)
+    })
 }
 
 fn error_text(error: impl Display) -> String {
     error.to_string()
 }
 
-fn encoded(sheet: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+fn encoded(sheet: PixmapRef<'_>) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, sheet.width(), sheet.height());
     // The sheet was white before its first shape: every pixel is opaque, and its colour is not multiplied by anything.

@@ -144,7 +144,7 @@ fn headlines(run: &Run<'_>) -> Vec<ReadResult> {
         .procedures
         .iter()
         .take(run.record.procedures.len())
-        .map(|procedure| procedures::facts_of(&procedure.kind).headline)
+        .map(|procedure| procedures::listed(&procedure.kind).headline)
         .collect();
     let longest = names.iter().map(Vec::len).max().unwrap_or(0);
     let of_rank = |rank: usize| {

@@ -1,10 +1,9 @@
 //! A column of a table, declared once: its name, its dimension and its value in a row. In: rows. Out: columns of Polars, and the numeric
 //! columns that comparisons and the reference know. It knows no procedure.
 
-use polars::prelude::Column as Written;
+use polars::prelude::{Column as Written, NamedFrom as _, NamedFromOwned as _, PlSmallStr, Series};
 
 use psd_plan::schema::Column;
-use psd_text::sanitize;
 
 /// A column of a table whose rows are `T`.
 pub(crate) enum TableColumn<T> {
@@ -13,26 +12,13 @@ pub(crate) enum TableColumn<T> {
     Optional(Column, fn(&T) -> Option<f64>),
     /// A whole number.
     Integer(Column, fn(&T) -> u64),
+    /// A word of psd: no text of a plan.
     Text(&'static str, fn(&T) -> &'static str),
     /// `true` or `false`.
     Flag(&'static str, fn(&T) -> Option<bool>),
 }
 
 impl<T> TableColumn<T> {
-    /// The column of these rows.
-    pub fn written(&self, rows: &[T]) -> Written {
-        match self {
-            Self::Number(column, read) => Written::new(column.name.into(), values(rows, *read)),
-            Self::Optional(column, read) => Written::new(column.name.into(), values(rows, *read)),
-            Self::Integer(column, read) => Written::new(column.name.into(), values(rows, *read)),
-            Self::Text(name, read) => {
-                let cells: Vec<String> = rows.iter().map(|row| sanitize::cell(read(row))).collect();
-                Written::new((*name).into(), cells)
-            }
-            Self::Flag(name, read) => Written::new((*name).into(), values(rows, *read)),
-        }
-    }
-
     /// The name and dimension of a numeric column.
     pub const fn numeric(&self) -> Option<Column> {
         match self {
@@ -42,15 +28,75 @@ impl<T> TableColumn<T> {
             Self::Text(..) | Self::Flag(..) => None,
         }
     }
+
+    /// Its cells in so many rows, none of which is read yet.
+    fn cells<'a>(&self, rows: usize) -> Box<dyn Cells<T> + 'a>
+    where
+        T: 'a,
+    {
+        match self {
+            Self::Number(column, read) => cells(column.name, *read, rows, Series::from_vec),
+            Self::Optional(column, read) => cells(column.name, *read, rows, Series::new),
+            Self::Integer(column, read) => cells(column.name, *read, rows, Series::from_vec),
+            Self::Text(name, read) => cells(name, *read, rows, Series::new),
+            Self::Flag(name, read) => cells(name, *read, rows, Series::new),
+        }
+    }
 }
 
-fn values<T, V>(rows: &[T], read: fn(&T) -> V) -> Vec<V> {
-    rows.iter().map(read).collect()
+/// The cells of a column, as far as their rows were read.
+trait Cells<T> {
+    fn add(&mut self, rows: &[T]);
+    fn written(self: Box<Self>) -> Written;
 }
+
+struct Filling<T, V> {
+    name: &'static str,
+    read: fn(&T) -> V,
+    values: Vec<V>,
+    series: fn(PlSmallStr, Vec<V>) -> Series,
+}
+
+fn cells<'a, T: 'a, V: 'a>(
+    name: &'static str,
+    read: fn(&T) -> V,
+    rows: usize,
+    series: fn(PlSmallStr, Vec<V>) -> Series,
+) -> Box<dyn Cells<T> + 'a> {
+    let values = Vec::with_capacity(rows);
+    Box::new(Filling {
+        name,
+        read,
+        values,
+        series,
+    })
+}
+
+impl<T, V> Cells<T> for Filling<T, V> {
+    fn add(&mut self, rows: &[T]) {
+        self.values.extend(rows.iter().map(self.read));
+    }
+
+    fn written(self: Box<Self>) -> Written {
+        (self.series)(self.name.into(), self.values).into()
+    }
+}
+
+/// Rows that all columns read before the next ones: few enough to stay in the cache meanwhile.
+const BLOCK: usize = 128;
 
 /// All columns of these rows.
 pub(crate) fn written<T>(columns: &[TableColumn<T>], rows: &[T]) -> Vec<Written> {
-    columns.iter().map(|column| column.written(rows)).collect()
+    let mut all: Vec<Box<dyn Cells<T> + '_>> = columns
+        .iter()
+        .map(|column| column.cells(rows.len()))
+        .collect();
+    for block in rows.chunks(BLOCK) {
+        for cells in &mut all {
+            cells.add(block);
+        }
+    }
+    all.into_iter().map(|cells| cells.written()).collect()
 }
 
 /// The numeric columns of a table.

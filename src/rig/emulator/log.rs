@@ -14,6 +14,7 @@
 use std::io::{self, Write};
 
 use super::EmulatedRig;
+use psd_text::count::counted;
 
 /// Writes the events of one rig emulator.
 pub struct Log {
@@ -94,16 +95,16 @@ impl Log {
             self.event(
                 rig.time(),
                 format_args!(
-                    "end: {moves} move{}, all within the limits: ok",
-                    plural(moves)
+                    "end: {}, all within the limits: ok",
+                    counted(moves, "move", "moves")
                 ),
             );
         } else {
             self.event(
                 rig.time(),
                 format_args!(
-                    "end: {violations} target{} outside the limits: FAILED",
-                    plural(violations)
+                    "end: {} outside the limits: FAILED",
+                    counted(violations, "target", "targets")
                 ),
             );
         }
@@ -123,10 +124,6 @@ impl Log {
             self.sink = None;
         }
     }
-}
-
-const fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 #[cfg(test)]

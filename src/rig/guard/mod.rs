@@ -188,17 +188,26 @@ impl<'rig> Guard<'rig> {
         if self.holds.is_none() && self.rig.at_once().is_some() {
             let ended = |is_reached| move |fault| UnfinishedStep { is_reached, fault };
             self.check_move(targets).map_err(ended(false))?;
-            let speed = self.speed_of(None).unwrap_or(OWN_SPEED);
+            let requested = self.speed_of(None);
+            let speed = requested.unwrap_or(OWN_SPEED);
             self.check_speed(speed).map_err(ended(false))?;
             let is_valid = speed > 0.0 && speed.is_finite();
             if let Some(rig) = self.rig.at_once().filter(|_| is_valid) {
-                rig.step(targets, speed, pause, reading);
+                let stepped = rig.step(targets, requested, pause, reading);
                 self.proposed = None;
                 self.going.clear();
-                self.note_speed(speed);
-                self.commanded.copy_from_slice(targets);
-                self.settled = true;
-                return self.checked(reading).map_err(ended(true));
+                let is_reached = stepped
+                    .as_ref()
+                    .map_or_else(|end| end.is_reached, |()| true);
+                if is_reached {
+                    self.note_speed(speed);
+                    self.commanded.copy_from_slice(targets);
+                    self.settled = true;
+                }
+                let read = self.or_hold(stepped.map_err(|end| end.fault));
+                return read
+                    .and_then(|()| self.checked(reading))
+                    .map_err(ended(is_reached));
             }
         }
         let moved = self.move_to(targets, None);

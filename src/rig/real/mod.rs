@@ -16,6 +16,7 @@ mod validity;
 
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::{AxialAxis, Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
+use psd_text::count::counted_in_words;
 
 use super::controllers::{Device, DeviceFault, DeviceMove, metres};
 use super::motion::from_positions;
@@ -240,11 +241,7 @@ impl RealRig {
 
 /// Formatted for a sentence.
 fn degrees_of_freedom(count: usize) -> String {
-    if count == 1 {
-        "one degree of freedom".to_owned()
-    } else {
-        format!("{count} degrees of freedom")
-    }
+    counted_in_words(count, "degree of freedom", "degrees of freedom")
 }
 
 /// What a device of the rig does.

@@ -22,7 +22,10 @@ use super::motion::{Instants, even};
 use super::virtual_rig::actuator::Actuator;
 use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
-use super::{CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault};
+use super::{
+    CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault,
+    UnfinishedStep, WholeSteps,
+};
 use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::{Frame, Plan, Settle, Specimen, VirtualLink};
@@ -268,21 +271,6 @@ impl VirtualRig {
         }
     }
 
-    /// Moves to finite targets \[m\] at this speed of the fastest axis, above 0 and finite \[m/s\], settles, pauses for so long \[s\] and
-    /// reads: to propose, execute, pause and read, without an allocation. Of a rig that is [`Rig::at_once`].
-    pub(super) fn step(&mut self, targets: &[f64], speed: f64, pause: f64, reading: &mut Reading) {
-        self.proposed = None;
-        let sign = self.sign;
-        self.aims.clear();
-        self.aims.extend(targets.iter().map(|to| sign * to));
-        self.arrive(speed);
-        self.rest(self.wait.unwrap_or(0.0));
-        if pause > 0.0 {
-            self.rest(pause);
-        }
-        self.read_into(reading);
-    }
-
     /// The actuators in force control go to these forces \[N\], each at its rate, while the others hold.
     fn load(&mut self, forces: &[f64]) {
         let mut seconds: f64 = 0.0;
@@ -385,6 +373,28 @@ impl VirtualRig {
     }
 }
 
+impl WholeSteps for VirtualRig {
+    fn step(
+        &mut self,
+        targets: &[f64],
+        speed: Option<f64>,
+        pause: f64,
+        reading: &mut Reading,
+    ) -> Result<(), UnfinishedStep> {
+        self.proposed = None;
+        let sign = self.sign;
+        self.aims.clear();
+        self.aims.extend(targets.iter().map(|to| sign * to));
+        self.arrive(speed.unwrap_or(OWN_SPEED));
+        self.rest(self.wait.unwrap_or(0.0));
+        if pause > 0.0 {
+            self.rest(pause);
+        }
+        self.read_into(reading);
+        Ok(())
+    }
+}
+
 impl Rig for VirtualRig {
     fn identity(&self) -> Identity {
         Identity {
@@ -472,7 +482,7 @@ impl Rig for VirtualRig {
         Ok((self.reading(), moved))
     }
 
-    fn at_once(&mut self) -> Option<&mut VirtualRig> {
+    fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
         (self.wait.is_some() && self.axial.is_empty()).then_some(self)
     }
 

@@ -37,21 +37,22 @@ pub fn check_consistency(
     logged: &LoggedRun,
     plan: &Plan,
 ) -> Result<(), Contradiction> {
-    recovered.lines.iter().try_for_each(is_ours)?;
+    let mut rig = PlansRig {
+        plan,
+        first_datum: None,
+        in_motion: false,
+        contradiction: None,
+    };
+    recovered
+        .lines
+        .iter()
+        .try_for_each(|line| is_ours(line, &mut rig))?;
     let parts = recovered.lines.split(|line| line.kind == EntryKind::Resume);
     parts
         .into_iter()
         .try_for_each(|part| runs_on(part.iter()))?;
     counts_on(logged)?;
-    let mut rig = PlansRig {
-        plan,
-        first_datum: None,
-        in_motion: false,
-    };
-    recovered
-        .lines
-        .iter()
-        .try_for_each(|line| rig.take(line).map_err(|reason| at(line, reason)))
+    rig.contradiction.map_or(Ok(()), Err)
 }
 
 /// The plan's rig, as far as the entries before one show it.
@@ -61,40 +62,38 @@ struct PlansRig<'a> {
     first_datum: Option<Vec<f64>>,
     /// Each reading is a single one, made during a motion.
     in_motion: bool,
+    /// The first entry that does not belong to it.
+    contradiction: Option<Contradiction>,
 }
 
 impl PlansRig<'_> {
-    /// Whether an entry can belong to it: one datum throughout, which is zero if the plan specifies this, and readings that their replies
-    /// give. A virtual rig has no raw bytes.
-    fn take(&mut self, line: &Line) -> Result<(), String> {
-        let unread = |fault: super::UnreadableLog| fault.to_string();
-        let is_real = self.plan.rig.link.as_real().is_some();
-        match line.kind {
-            EntryKind::Rig => self.answered(body(line).map_err(unread)?),
-            EntryKind::Intent => {
-                let intent: IntentBody = body(line).map_err(unread)?;
-                self.in_motion = intent.samples.is_some();
-                without_bytes(
-                    is_real || intent.wire.is_none(),
-                    "nothing is sent to a virtual rig",
-                )
-            }
-            EntryKind::Stroke => {
-                self.in_motion = false;
-                Ok(())
-            }
-            EntryKind::Sample => self.read(&body(line).map_err(unread)?),
-            EntryKind::Fault => {
-                // A motion ends here, and its last reading was a single one.
-                self.in_motion = true;
-                let fault: FaultBody = body(line).map_err(unread)?;
-                let read = fault.reading.map_or(Ok(()), |reading| self.read(&reading));
-                self.in_motion = false;
-                read
-            }
-            EntryKind::Held if !is_real => Err("a virtual rig has no final hold".to_owned()),
-            _ => Ok(()),
+    /// Whether an entry can belong to it, by its `check`: one datum throughout, which is zero if the plan specifies this, and readings that
+    /// their replies give. A virtual rig has no raw bytes.
+    fn take(&mut self, line: &Line, check: impl FnOnce(&mut Self) -> Result<(), String>) {
+        if self.contradiction.is_none() {
+            self.contradiction = check(self).err().map(|reason| at(line, reason));
         }
+    }
+
+    const fn is_real(&self) -> bool {
+        self.plan.rig.link.as_real().is_some()
+    }
+
+    fn sent(&mut self, intent: &IntentBody) -> Result<(), String> {
+        self.in_motion = intent.samples.is_some();
+        without_bytes(
+            self.is_real() || intent.wire.is_none(),
+            "nothing is sent to a virtual rig",
+        )
+    }
+
+    /// A motion ends here, and its last reading was a single one.
+    fn failed(&mut self, fault: &FaultBody) -> Result<(), String> {
+        self.in_motion = true;
+        let reading = fault.reading.as_ref();
+        let read = reading.map_or(Ok(()), |reading| self.read(reading));
+        self.in_motion = false;
+        read
     }
 
     fn answered(&mut self, rig: RigBody) -> Result<(), String> {
@@ -152,40 +151,66 @@ fn at(line: &Line, reason: impl Into<String>) -> Contradiction {
     }
 }
 
-/// Whether psd would write exactly the same object, with the same fields.
-fn is_ours(line: &Line) -> Result<(), Contradiction> {
+/// Whether psd would write exactly the same object, with the same fields. The rig takes it.
+fn is_ours(line: &Line, rig: &mut PlansRig<'_>) -> Result<(), Contradiction> {
     match line.kind {
-        EntryKind::Header => written::<Header>(line, &["format"]),
-        EntryKind::Plan => written::<PlanBody>(line, &[]),
-        EntryKind::Rig => written::<RigBody>(line, &[]),
-        EntryKind::Intent => written::<IntentBody>(line, &[]),
-        EntryKind::Sample => written::<SampleBody>(line, &[]),
-        EntryKind::Stroke => written::<StrokeBody>(line, &[]),
-        EntryKind::Step => written::<StepBody>(line, &[]),
-        EntryKind::Digest => written::<DigestBody>(line, &[]),
-        EntryKind::Operator => written::<OperatorEntry>(line, &[]),
-        EntryKind::Event => written::<Event>(line, &[]),
-        EntryKind::Fault => written::<FaultBody>(line, &[]),
-        EntryKind::Held => written::<HeldBody>(line, &[]),
-        EntryKind::LineStatistics => written::<LineStatistics>(line, &[]),
-        EntryKind::Recover => written::<RecoverBody>(line, &[]),
-        EntryKind::Amend => written::<AmendBody>(line, &[]),
-        EntryKind::Resume => written::<ResumeBody>(line, &[]),
-        EntryKind::End => written::<EndBody>(line, &["count", "head"]),
+        EntryKind::Header => written::<Header>(line, &["format"]).map(drop),
+        EntryKind::Plan => written::<PlanBody>(line, &[]).map(drop),
+        EntryKind::Rig => {
+            let body: RigBody = written(line, &[])?;
+            rig.take(line, |rig| rig.answered(body));
+            Ok(())
+        }
+        EntryKind::Intent => {
+            let body: IntentBody = written(line, &[])?;
+            rig.take(line, |rig| rig.sent(&body));
+            Ok(())
+        }
+        EntryKind::Sample => {
+            let body: SampleBody = written(line, &[])?;
+            rig.take(line, |rig| rig.read(&body));
+            Ok(())
+        }
+        EntryKind::Stroke => {
+            rig.in_motion = false;
+            written::<StrokeBody>(line, &[]).map(drop)
+        }
+        EntryKind::Step => written::<StepBody>(line, &[]).map(drop),
+        EntryKind::Digest => written::<DigestBody>(line, &[]).map(drop),
+        EntryKind::Operator => written::<OperatorEntry>(line, &[]).map(drop),
+        EntryKind::Event => written::<Event>(line, &[]).map(drop),
+        EntryKind::Fault => {
+            let body: FaultBody = written(line, &[])?;
+            rig.take(line, |rig| rig.failed(&body));
+            Ok(())
+        }
+        EntryKind::Held => {
+            let ours = written::<HeldBody>(line, &[]).map(drop);
+            let is_real = rig.is_real();
+            rig.take(line, |_| {
+                without_bytes(is_real, "a virtual rig has no final hold")
+            });
+            ours
+        }
+        EntryKind::LineStatistics => written::<LineStatistics>(line, &[]).map(drop),
+        EntryKind::Recover => written::<RecoverBody>(line, &[]).map(drop),
+        EntryKind::Amend => written::<AmendBody>(line, &[]).map(drop),
+        EntryKind::Resume => written::<ResumeBody>(line, &[]).map(drop),
+        EntryKind::End => written::<EndBody>(line, &["count", "head"]).map(drop),
     }
 }
 
-/// `own` are the fields of the run log itself.
-fn written<T: Body + Serialize>(line: &Line, own: &[&str]) -> Result<(), Contradiction> {
+/// The body of an entry; `own` are the fields of the run log itself.
+fn written<T: Body + Serialize>(line: &Line, own: &[&str]) -> Result<T, Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
     // This is true of nearly all, and found much faster than the fields of both.
     if is_written_as(line, &read) {
-        return Ok(());
+        return Ok(read);
     }
     let again = serde_json::to_value(&read).unwrap_or_default();
     let logged = line.body();
     let (Some(again), Some(logged)) = (again.as_object(), logged.as_object()) else {
-        return Ok(());
+        return Ok(read);
     };
     let mut names = logged.keys().filter(|name| !own.contains(&name.as_str()));
     if let Some(foreign) = names.find(|name| again.get(*name) != logged.get(*name)) {
@@ -195,9 +220,10 @@ fn written<T: Body + Serialize>(line: &Line, own: &[&str]) -> Result<(), Contrad
         ));
     }
     let missing = again.keys().find(|name| !logged.contains_key(*name));
-    missing.map_or(Ok(()), |missing| {
-        Err(at(line, format!("it has no `{missing}`")))
-    })
+    match missing {
+        Some(missing) => Err(at(line, format!("it has no `{missing}`"))),
+        None => Ok(read),
+    }
 }
 
 /// Rig time only increases.

@@ -113,9 +113,9 @@ pub(super) fn append_sample(
 }
 
 /// A reading that is not a number is a fault of the rig, with the values as received.
-fn finite(reading: Reading) -> Result<Reading, RigFault> {
+fn finite(reading: &Reading) -> Result<(), RigFault> {
     if reading.is_finite() {
-        return Ok(reading);
+        return Ok(());
     }
     let numbers = reading.displacement.iter().chain(&reading.force);
     let numbers: Vec<String> = numbers.map(f64::to_string).collect();
@@ -126,11 +126,15 @@ fn finite(reading: Reading) -> Result<Reading, RigFault> {
 }
 
 /// The same reading, by the clock of the run log.
-pub(super) fn in_log_time(reading: Reading, offset: f64) -> Result<Reading, RigFault> {
-    finite(Reading {
-        time: reading.time + offset,
-        ..reading
-    })
+pub(super) fn in_log_time(mut reading: Reading, offset: f64) -> Result<Reading, RigFault> {
+    to_log_time(&mut reading, offset)?;
+    Ok(reading)
+}
+
+/// A reading becomes that by the clock of the run log.
+pub(super) fn to_log_time(reading: &mut Reading, offset: f64) -> Result<(), RigFault> {
+    reading.time += offset;
+    finite(reading)
 }
 
 pub(super) fn same_bits(one: &[f64], other: &[f64]) -> bool {

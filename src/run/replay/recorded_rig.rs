@@ -6,7 +6,9 @@ use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
 use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
-use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
+use super::entry_of::{
+    append_sample, in_log_time, intent, same_bits, target_text, to_log_time, unknown_rig,
+};
 use super::state::{State, ended};
 use super::steps_digest::DigestedTarget;
 use psd_physics::tracking::trajectory::Path;
@@ -16,7 +18,7 @@ use psd_rig::safety::failpoint;
 use psd_rig::safety::failpoint::Guarding;
 use psd_rig::{
     DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
-    Reading, Rig, RigFault,
+    OWN_SPEED, Reading, Rig, RigFault, UnfinishedStep, WholeSteps,
 };
 
 /// A rig whose answers are all logged.
@@ -190,11 +192,18 @@ impl<'rig> RecordedRig<'rig> {
         });
         let (reading, moved) = checked.or_else(|fault| self.failed(Call::Read, fault))?;
         self.count()?;
-        append_sample(&mut self.state.borrow_mut(), &reading, moved)?;
-        if failpoint::on(Guarding::SampleDurable) {
-            self.state.borrow_mut().sync_point()?;
-        }
+        self.log_reading(&reading, moved)?;
         Ok((reading, moved))
+    }
+
+    /// A reading is durable before it is used.
+    fn log_reading(&self, reading: &Reading, moved: Option<[f64; 2]>) -> Result<(), RigFault> {
+        let mut state = self.state.borrow_mut();
+        append_sample(&mut state, reading, moved)?;
+        if failpoint::on(Guarding::SampleDurable) {
+            state.sync_point()?;
+        }
+        Ok(())
     }
 
     /// A move that the guard refuses is logged too, so that the run can be replayed up to here.
@@ -273,6 +282,41 @@ impl<'rig> RecordedRig<'rig> {
     }
 }
 
+/// Of a simulation whose targets and readings are digested.
+impl WholeSteps for RecordedRig<'_> {
+    fn step(
+        &mut self,
+        targets: &[f64],
+        speed: Option<f64>,
+        pause: f64,
+        reading: &mut Reading,
+    ) -> Result<(), UnfinishedStep> {
+        let ended = |is_reached| move |fault| UnfinishedStep { is_reached, fault };
+        self.pending = None;
+        let target = DigestedTarget {
+            to: targets,
+            speed,
+            encoded: None,
+            rate: speed.unwrap_or(OWN_SPEED),
+            id: None,
+            path: None,
+            samples: None,
+        };
+        self.state
+            .borrow_mut()
+            .add_to_digest("a target", |digest| digest.target(&target))
+            .map_err(ended(false))?;
+        let rig = self.rig().map_err(ended(false))?;
+        if let Some(rig) = rig.at_once() {
+            rig.step(targets, speed, pause, reading)?;
+        }
+        to_log_time(reading, self.offset.unwrap_or(0.0))
+            .or_else(|fault| self.failed(Call::Read, fault))
+            .and_then(|()| self.log_reading(reading, None))
+            .map_err(ended(true))
+    }
+}
+
 impl Rig for RecordedRig<'_> {
     fn identity(&self) -> Identity {
         self.about.identity.clone()
@@ -339,8 +383,10 @@ impl Rig for RecordedRig<'_> {
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
         if self.answers_from_the_log() {
-            // A target is compared with the run log here, if a client's requests came first.
-            self.logged_intent(&targets, speed, None)?;
+            // A target is compared with the run log here, if a client's requests came first; else it was when it was proposed.
+            if self.state.borrow().driven {
+                self.logged_intent(&targets, speed, None)?;
+            }
             let mut state = self.state.borrow_mut();
             state.consume();
             if let Some(fault) = state.logged_fault(Call::Execute) {
@@ -387,6 +433,12 @@ impl Rig for RecordedRig<'_> {
 
     fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         self.take_reading(|rig| rig.read_moved())
+    }
+
+    fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
+        let is_simulated = self.state.borrow().digests() && !self.answers_from_the_log();
+        let steps = is_simulated && self.live()?.at_once().is_some();
+        steps.then_some(self)
     }
 
     fn traverse(

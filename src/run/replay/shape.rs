@@ -11,6 +11,7 @@ use super::plain_body::Body;
 use super::steps_digest::DIGEST_STEPS;
 use psd_plan::Plan;
 use psd_rig::journal::{EntryKind, Line, Recovered};
+use psd_text::count::counted;
 
 /// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -141,14 +142,14 @@ impl Shape<'_> {
         if axes != planned {
             return Err(format!(
                 "the plan moves {}, but the rig has {axes}",
-                counted(planned)
+                counted(planned, "axis", "axes")
             ));
         }
         match lists.iter().find(|(_, list)| list.len() != axes) {
             Some((name, list)) => Err(format!(
                 "its `{name}` has {}, but the rig has {}",
-                entries(list.len()),
-                counted(axes)
+                counted(list.len(), "entry", "entries"),
+                counted(axes, "axis", "axes")
             )),
             None => Ok(()),
         }
@@ -164,7 +165,7 @@ impl Shape<'_> {
         if rig.axes != first.axes {
             return Err(format!(
                 "it has {}, but the rig of entry {} has {}",
-                counted(rig.axes),
+                counted(rig.axes, "axis", "axes"),
                 first.seq,
                 first.axes
             ));
@@ -172,8 +173,8 @@ impl Shape<'_> {
         match &rig.last_move {
             Some(last) if last.targets.len() != rig.axes => Err(format!(
                 "its `last_move` has {}, but the rig has {}",
-                entries(last.targets.len()),
-                counted(rig.axes)
+                counted(last.targets.len(), "entry", "entries"),
+                counted(rig.axes, "axis", "axes")
             )),
             _ => Ok(()),
         }
@@ -190,8 +191,8 @@ impl Shape<'_> {
         }
         Err(format!(
             "its `path` has {}, but the rig has {}",
-            entries(paths),
-            counted(intent.to.len())
+            counted(paths, "entry", "entries"),
+            counted(intent.to.len(), "axis", "axes")
         ))
     }
 
@@ -205,8 +206,8 @@ impl Shape<'_> {
         }
         Err(format!(
             "its `axes` has {}, but the rig has {}",
-            entries(step.axes.len()),
-            counted(axes)
+            counted(step.axes.len(), "entry", "entries"),
+            counted(axes, "axis", "axes")
         ))
     }
 
@@ -261,22 +262,4 @@ impl Shape<'_> {
 
 fn body_of<T: Body>(line: &Line) -> Result<T, String> {
     line.read_by(T::of_plain).map_err(|fault| fault.to_string())
-}
-
-/// `1 axis`, `2 axes`
-fn counted(axes: usize) -> String {
-    if axes == 1 {
-        "1 axis".to_owned()
-    } else {
-        format!("{axes} axes")
-    }
-}
-
-/// `1 entry`, `2 entries`
-fn entries(count: usize) -> String {
-    if count == 1 {
-        "1 entry".to_owned()
-    } else {
-        format!("{count} entries")
-    }
 }

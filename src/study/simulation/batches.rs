@@ -10,6 +10,7 @@ use psd_plan::Plan;
 use psd_plan::formula::{ResultPart, ResultReference};
 use psd_plan::record::Record;
 use psd_rig::virtual_rig;
+use psd_text::count::counted;
 
 /// The impact that is the whole plan, if it can run in a batch.
 pub fn impact(plan: &Plan) -> Option<BatchedImpact> {
@@ -31,50 +32,37 @@ pub fn wanted(read: &[ResultReference]) -> Wanted {
 }
 
 /// Impacts that wait to run together.
+#[derive(Default)]
 pub struct Batch {
-    wanted: Wanted,
-    /// Number in the block, and plan.
-    runs: Vec<(usize, Box<Plan>)>,
+    /// Their numbers in the block.
+    numbers: Vec<usize>,
     impacts: Vec<BatchedImpact>,
 }
 
 impl Batch {
-    /// Of impacts of which these results are read.
-    pub const fn new(wanted: Wanted) -> Self {
-        Self {
-            wanted,
-            runs: Vec::new(),
-            impacts: Vec::new(),
-        }
-    }
-
-    /// Adds the impact of a plan. Its files are not kept: a batch has many plans.
-    pub fn add(&mut self, number: usize, mut plan: Plan, impact: BatchedImpact) {
-        plan.files = Vec::new();
-        self.runs.push((number, Box::new(plan)));
+    /// Adds an impact with its number in the block.
+    pub fn add(&mut self, number: usize, impact: BatchedImpact) {
+        self.numbers.push(number);
         self.impacts.push(impact);
     }
 
-    /// The records, with number and plan; or why a run leaves the batch.
-    pub fn run(self) -> impl Iterator<Item = (usize, Box<Plan>, Result<Record, Leaves>)> {
-        let first = self.runs.first().map(|(_, plan)| &**plan);
-        let records = first.map_or_else(Vec::new, |plan| {
-            let rig = virtual_rig(plan).identity();
-            let record = |Ended { procedure, outcome }| Record {
-                rig: rig.clone(),
-                procedures: vec![procedure],
-                events: Vec::new(),
-                outcome,
-                drift: None,
-            };
-            let impacts = batched::run(&plan.procedures[0], &self.impacts, self.wanted);
-            let records = impacts.into_iter().map(|found| found.map(record));
-            records.collect::<Vec<_>>()
-        });
-        self.runs
-            .into_iter()
-            .zip(records)
-            .map(|((number, plan), record)| (number, plan, record))
+    /// The records, with the number of each; or why a run leaves the batch. `plan`: that of any of them.
+    pub fn run(
+        self,
+        plan: &Plan,
+        wanted: Wanted,
+    ) -> impl Iterator<Item = (usize, Result<Record, Leaves>)> {
+        let rig = virtual_rig(plan).identity();
+        let record = move |Ended { procedure, outcome }| Record {
+            rig: rig.clone(),
+            procedures: vec![procedure],
+            events: Vec::new(),
+            outcome,
+            drift: None,
+        };
+        let impacts = batched::run(&plan.procedures[0], &self.impacts, wanted);
+        let records = impacts.into_iter().map(move |found| found.map(&record));
+        self.numbers.into_iter().zip(records)
     }
 }
 
@@ -106,12 +94,12 @@ impl LeftBatches {
         ]
         .map(|(counter, why)| (counter.load(Ordering::Relaxed), why));
         let all: u64 = counts.iter().map(|(count, _)| count).sum();
-        let runs = if all == 1 { "run" } else { "runs" };
+        let runs = counted(all, "run", "runs");
         let reasons: Vec<String> = counts
             .into_iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, why)| format!("{count} {why}"))
             .collect();
-        (all > 0).then(|| format!("{all} {runs} left the batches: {}", reasons.join(", ")))
+        (all > 0).then(|| format!("{runs} left the batches: {}", reasons.join(", ")))
     }
 }

@@ -9,7 +9,6 @@ pub mod readout;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -17,13 +16,13 @@ use rayon::prelude::*;
 use super::data_set::StudyRow;
 use super::definition::Definition;
 use crate::check::ParsedPlan;
+use crate::check::binding::{Binder, BoundInputs};
 use crate::procedures::impact::batched::Leaves;
 use batches::Batch;
 pub use batches::LeftBatches;
 use psd_physics::impact::summary::Wanted;
-use psd_plan::Plan;
+use psd_plan::{DecisionRule, Plan};
 use psd_text::diagnostic::Diagnostic;
-use psd_text::units::Quantity;
 use readout::{Kept, Readout};
 
 /// Runs that one thread takes at a time.
@@ -32,6 +31,7 @@ pub const BLOCK: u64 = 1024;
 /// Simulates the runs of a study.
 pub struct Simulation<'a> {
     parsed: &'a ParsedPlan,
+    inputs: BoundInputs,
     /// The plan without the study.
     plan: &'a Plan,
     study: &'a Definition,
@@ -51,8 +51,11 @@ impl<'a> Simulation<'a> {
         let readout = Readout::of(plan, study);
         let references = readout.references(plan);
         let is_batched = batches::takes(plan, &references);
+        let inputs = study.inputs.iter();
+        let inputs = inputs.map(|input| (input.name.as_str(), input.dimension));
         let mut simulation = Self {
             parsed,
+            inputs: BoundInputs::new(parsed, inputs),
             plan,
             study,
             readout,
@@ -63,8 +66,10 @@ impl<'a> Simulation<'a> {
         };
         let mut values = Vec::new();
         study.draws.draw(0, &mut values);
-        let first = parsed.bind_with_studies(&simulation.quantities(&values));
-        if let Ok(first) = first {
+        let mut binder = Binder::new(parsed, &simulation.inputs).with_studies();
+        let first = binder.bind(&values).ok().cloned();
+        drop(binder);
+        if let Some(first) = first {
             simulation.with_studies = simulation.readout.differs(&first);
             simulation.readout.keep_limits_of(plan, &first);
         }
@@ -133,33 +138,51 @@ impl<'a> Simulation<'a> {
     }
 
     fn on_this_thread(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<StudyRow> {
+        let mut binder = Binder::new(self.parsed, &self.inputs);
+        if self.with_studies {
+            binder = binder.with_studies();
+        }
         let mut rows = Vec::new();
         let mut values = Vec::new();
-        let mut batch = Batch::new(self.wanted);
+        let mut batch = Batch::default();
+        // The plan of the first impact of the batch, and whether it decides the other runs too.
+        let mut first: Option<(Plan, bool)> = None;
         for run in runs {
             match points.and_then(|points| points.get(rows.len())) {
                 Some(point) => self.study.draws.at(point, &mut values),
                 None => self.study.draws.draw(run, &mut values),
             }
-            let kept = match self.bind(&values) {
+            let kept = match bind(&mut binder, &values) {
                 Err(reason) => self.readout.nothing(self.plan, reason),
-                Ok(plan) if self.is_batched => match batches::impact(&plan) {
+                Ok(plan) if self.is_batched => match batches::impact(plan) {
                     Some(impact) => {
-                        batch.add(rows.len(), plan, impact);
+                        batch.add(rows.len(), impact);
+                        if first.is_none() {
+                            let plan = plan.clone();
+                            first = Some((plan, binder.decide_alike()));
+                        }
                         Kept::default()
                     }
-                    None => self.leaving(&plan, Leaves::NeedsRig),
+                    None => self.leaving(plan, Leaves::NeedsRig),
                 },
-                Ok(plan) => self.alone(&plan),
+                Ok(plan) => self.alone(plan),
             };
             rows.push(row(run, values.clone(), kept));
         }
-        for (at, plan, record) in batch.run() {
-            let kept = match record {
-                Ok(record) => self.readout.read(&plan, &record),
-                Err(why) => self.leaving(&plan, why),
-            };
+        let Some((first, decides_all)) = first else {
+            return rows;
+        };
+        for (at, record) in batch.run(&first, self.wanted) {
             let inputs = std::mem::take(&mut rows[at].inputs);
+            let kept = match record {
+                Ok(record) if decides_all => self.readout.read(&first, &record),
+                // A batch keeps no plans.
+                record => match (bind(&mut binder, &inputs), record) {
+                    (Err(reason), _) => self.readout.nothing(self.plan, reason),
+                    (Ok(plan), Ok(record)) => self.readout.read(plan, &record),
+                    (Ok(plan), Err(why)) => self.leaving(plan, why),
+                },
+            };
             rows[at] = row(rows[at].run, inputs, kept);
         }
         rows
@@ -174,32 +197,19 @@ impl<'a> Simulation<'a> {
     fn alone(&self, plan: &Plan) -> Kept {
         self.readout.read(plan, &alone::simulate(plan))
     }
+}
 
-    fn quantities(&self, values: &[f64]) -> BTreeMap<String, Quantity> {
-        let inputs = self.study.inputs.iter().zip(values);
-        inputs
-            .map(|(input, value)| (input.name.clone(), Quantity::new(*value, input.dimension)))
-            .collect()
-    }
-
-    /// The plan with these values of the inputs, prepared; the first error if it is invalid.
-    fn bind(&self, values: &[f64]) -> Result<Plan, String> {
-        let quantities = self.quantities(values);
-        let bound = if self.with_studies {
-            self.parsed.bind_with_studies(&quantities)
-        } else {
-            self.parsed.bind(&quantities)
-        };
-        let mut plan = bound.map_err(|errors| {
-            let first = errors.into_iter().find(Diagnostic::is_error);
-            first.map_or_else(
-                || "the plan with these inputs is invalid".to_owned(),
-                |first| format!("the plan with these inputs is invalid: {}", first.message),
-            )
-        })?;
-        self.readout.prepare(&mut plan);
-        Ok(plan)
-    }
+/// The plan with these values of the inputs, whose runs decide on the value alone; the first error if it is invalid.
+fn bind<'b>(binder: &'b mut Binder<'_>, values: &[f64]) -> Result<&'b Plan, String> {
+    let plan = binder.bind(values).map_err(|errors| {
+        let first = errors.into_iter().find(Diagnostic::is_error);
+        first.map_or_else(
+            || "the plan with these inputs is invalid".to_owned(),
+            |first| format!("the plan with these inputs is invalid: {}", first.message),
+        )
+    })?;
+    plan.decision_rule = DecisionRule::ValueAlone;
+    Ok(plan)
 }
 
 fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> StudyRow {

@@ -4,6 +4,8 @@
 //! A requirement is decided on its value alone: the scatter of the runs replaces the uncertainty of one run. What a run calls inconclusive has no result
 //! here: a stop by a limit, a result that does not exist, a peak that was not reached.
 
+use std::borrow::Cow;
+
 use crate::study::data_set::{Column, Decision, Limit, Outcome, StudyKind};
 use crate::study::definition::Definition;
 use crate::verdict::{self, Verdict};
@@ -205,27 +207,27 @@ impl Readout {
         }
     }
 
-    /// Makes the plan of a run decide what the study decides, on the value alone.
-    pub fn prepare(&self, plan: &mut Plan) {
-        plan.decision_rule = DecisionRule::ValueAlone;
-        if let Some((study_index, requirement)) = &self.exceeds {
-            // The limit may be a parameter of the run.
-            let own = plan.studies.fragilities.get(*study_index);
-            let condition = own.map_or_else(
-                || requirement.conditions[0].clone(),
-                |own| own.exceeds.clone(),
-            );
-            plan.requirements = vec![Requirement {
+    /// What is decided in a run of this plan: the limit of an exceedance may be a parameter of the run.
+    fn decided<'a>(&'a self, plan: &'a Plan) -> Cow<'a, [Requirement]> {
+        let own = self.exceeds.as_ref().and_then(|(index, requirement)| {
+            let own = plan.studies.fragilities.get(*index)?;
+            Some(Requirement {
                 label: requirement.label.clone(),
-                conditions: vec![condition],
-            }];
-        }
+                conditions: vec![own.exceeds.clone()],
+            })
+        });
+        own.map_or_else(
+            || Cow::Borrowed(self.requirements(plan)),
+            |own| Cow::Owned(vec![own]),
+        )
     }
 
-    /// What is kept of a run of a prepared plan.
+    /// What is kept of a run of a plan.
     pub fn read(&self, plan: &Plan, record: &Record) -> Kept {
-        let assessment = verdict::assess(plan, record);
-        let outcomes = assessment.requirements.iter();
+        let decided = self.decided(plan);
+        let assessed =
+            verdict::assess_requirements(&decided, DecisionRule::ValueAlone, plan, record);
+        let outcomes = assessed.iter();
         let outcomes = outcomes
             .map(|requirement| match requirement.verdict {
                 Verdict::Completed | Verdict::Pass => Outcome::Met,
@@ -240,8 +242,8 @@ impl Readout {
                     requirement,
                     condition,
                 } => {
-                    let outcome = &assessment.requirements[*requirement].conditions[*condition];
-                    let of_the_run = &self.requirements(plan)[*requirement].conditions[*condition];
+                    let outcome = &assessed[*requirement].conditions[*condition];
+                    let of_the_run = &decided[*requirement].conditions[*condition];
                     let conclusive = outcome.verdict != Verdict::Inconclusive;
                     match outcome.value.filter(|_| conclusive) {
                         None => Err(outcome.reason.clone()),
@@ -268,8 +270,7 @@ impl Readout {
                 .ok()
         });
         let results = results.collect();
-        let inconclusive = assessment
-            .requirements
+        let inconclusive = assessed
             .iter()
             .flat_map(|requirement| &requirement.conditions)
             .find_map(|condition| condition.reason.clone());

@@ -129,9 +129,9 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             continue;
         };
         let alone = alone::simulate(&plan);
-        let mut batch = Batch::new(Wanted::ALL);
-        batch.add(0, plan, impact);
-        let (_, _, found) = batch.run().next().unwrap();
+        let mut batch = Batch::default();
+        batch.add(0, impact);
+        let (_, found) = batch.run(&plan, Wanted::ALL).next().unwrap();
         let found = found.unwrap();
         let names: Vec<&str> = found.procedures[0]
             .results

@@ -103,7 +103,7 @@ fn a_specimen_without_load_is_not_moved() {
     let History::Unload(moved) = &record.procedures[0].history else {
         panic!()
     };
-    assert!(moved.is_empty());
+    assert!(moved.steps.is_empty());
     assert_eq!(number(&record, 0, "residual_displacement").0, Some(0.0));
 }
 

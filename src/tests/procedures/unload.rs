@@ -64,7 +64,7 @@ fn unloaded(
 
 fn moves(record: &Record) -> &[UnloadStep] {
     match &record.procedures[1].history {
-        History::Unload(moves) => moves,
+        History::Unload(history) => &history.steps,
         other => panic!("{other:?}"),
     }
 }

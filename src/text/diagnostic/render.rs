@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use crate::count::counted;
 use crate::source::Sources;
 use miette::{
     GraphicalTheme, LabeledSpan, MietteHandlerOpts, ReportHandler as _, ThemeCharacters,
@@ -105,16 +106,16 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, appearance: &Appearanc
 
 /// `2 errors and 1 warning, the first 20 shown; psd explain E202 shows more`
 fn closing_line(ordered: &[&Diagnostic]) -> String {
-    let count = |severity, one: &str| {
+    let count = |severity, one: &str, several: &str| {
         let number = ordered
             .iter()
             .filter(|diagnostic| diagnostic.severity == severity)
             .count();
-        (number > 0).then(|| format!("{number} {one}{}", if number == 1 { "" } else { "s" }))
+        (number > 0).then(|| counted(number, one, several))
     };
     let counted: Vec<String> = [
-        count(Severity::Error, "error"),
-        count(Severity::Warning, "warning"),
+        count(Severity::Error, "error", "errors"),
+        count(Severity::Warning, "warning", "warnings"),
     ]
     .into_iter()
     .flatten()

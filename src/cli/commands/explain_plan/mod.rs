@@ -3,9 +3,7 @@
 
 mod cells;
 pub(crate) mod dry_rig;
-mod impact;
 mod limits;
-pub(crate) mod shake;
 pub(crate) mod start;
 mod substructures;
 #[cfg(test)]
@@ -19,13 +17,12 @@ use super::explain_plan::dry_rig::{Reach, Watched, whole};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use cells::{row, span};
+use psd::procedures;
 use psd::report::wording::specimen as specimen_text;
 use psd::report::{PredictedProcedure, PredictedRequirement, Prediction};
 use psd::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
-use psd_plan::record::{History, Outcome, Record};
-use psd_plan::{
-    Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,
-};
+use psd_plan::record::{Outcome, Record};
+use psd_plan::{Condition, DecisionRule, Interval, Link, Plan, ReadingErrors, VirtualLink};
 use psd_text::columns::columns;
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
@@ -242,75 +239,9 @@ impl<'a> DryRun<'a> {
             .zip(&self.plan.procedures)
             .enumerate()
         {
-            if let (History::Impact(history), ProcedureKind::Impact(parameters)) =
-                (&procedure.history, &planned.kind)
-                && history.frame.is_none()
-                && !history.steps.is_empty()
-            {
-                let predicted = tracking::rows(self.plan, parameters, procedure, history);
-                let energy = tracking::energy(lagging.as_ref(), index);
-                section(
-                    &format!("{}, impact", procedure.name),
-                    [
-                        impact::damping(procedure),
-                        impact::rows(history),
-                        predicted,
-                        energy,
-                    ]
-                    .concat(),
-                );
-            }
-            if let (History::Impact(history), ProcedureKind::Impact(parameters)) =
-                (&procedure.history, &planned.kind)
-                && let Some(frame) = history
-                    .frame
-                    .as_ref()
-                    .filter(|frame| !frame.floors.is_empty())
-            {
-                let modes = shake::modes(frame.modes.as_ref(), &frame.damping_ratios);
-                section(&format!("{}, modes", procedure.name), modes);
-                section(
-                    &format!("{}, shapes", procedure.name),
-                    shake::shapes(frame.modes.as_ref()),
-                );
-                let heading = format!("{}, impact on storey {}", procedure.name, frame.struck + 1);
-                let predicted =
-                    tracking::storey_rows(self.plan, parameters, history.time_step, frame);
-                let energy = tracking::energy(lagging.as_ref(), index);
-                section(
-                    &heading,
-                    [
-                        impact::rows(history),
-                        shake::floor_peaks(&frame.floors),
-                        predicted,
-                        energy,
-                    ]
-                    .concat(),
-                );
-            }
-            if matches!(procedure.history, History::Escalate(_)) {
-                section(
-                    &format!("{}, worst impact", procedure.name),
-                    tracking::energy(lagging.as_ref(), index),
-                );
-            }
-            if let (History::Shake(history), ProcedureKind::Shake(shake)) =
-                (&procedure.history, &planned.kind)
-            {
-                let modes = shake::modes(history.modes.as_ref(), &history.damping_ratios);
-                section(&format!("{}, modes", procedure.name), modes);
-                section(
-                    &format!("{}, shapes", procedure.name),
-                    shake::shapes(history.modes.as_ref()),
-                );
-                let predicted = tracking::shake_rows(self.plan, shake, history);
-                let energy = tracking::energy(lagging.as_ref(), index);
-                let frame = self.plan.specimens[shake.specimen].frame.as_ref();
-                let steps = shake::steps(history, frame, shake.stepping.integrator);
-                section(
-                    &format!("{}, shake", procedure.name),
-                    [steps, predicted, energy].concat(),
-                );
+            let energy = tracking::energy(lagging.as_ref(), index);
+            for part in procedures::predicted(self.plan, &planned.kind, procedure, &energy) {
+                section(&part.heading, part.rows);
             }
         }
         section(&format!("Limits{of_rig}"), self.limits());

@@ -2,7 +2,7 @@
 
 use super::*;
 use psd::run::Unwatched;
-use psd_plan::{Interval, Limits, Link, VirtualLink};
+use psd_plan::{Interval, Limits, Link, ProcedureKind, VirtualLink};
 use psd_rig::virtual_rig;
 use psd_testing::plans::{empty_plan, every};
 
@@ -10,8 +10,8 @@ use psd_testing::plans::{empty_plan, every};
 fn example(farthest: f64) -> Plan {
     use psd_plan::formula::Formula::Constant;
     use psd_plan::{
-        Behaviour, Contact, Impact, ImpactTarget, PointTarget, Procedure, ProcedureKind, RigPlan,
-        Settle, Specimen, Stepping, Striker, Until,
+        Behaviour, Contact, Impact, ImpactTarget, PointTarget, Procedure, RigPlan, Settle,
+        Specimen, Stepping, Striker, Until,
     };
     let specimen = Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness: 327.65 }));
     let impact = Impact {

@@ -299,12 +299,13 @@ impl Observer for Watcher {
     }
 
     fn step_done(&mut self, report: &StepReport) {
-        self.pace.step_done(report.step, Instant::now());
+        let now = Instant::now();
+        self.pace.step_done(report.step, now);
         let left = self.pace.left();
         match &mut self.face {
             Face::Screen(screen) => screen.set_left(left),
             Face::Bar(bar) => bar.left = left,
-            Face::Lines(lines) => lines.left = left,
+            Face::Lines(lines) => (lines.left, lines.now) = (left, Some(now)),
         }
         self.face().step_done(report);
     }

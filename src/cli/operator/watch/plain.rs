@@ -12,6 +12,7 @@ use crate::output::print_message;
 use psd::run::{Observer, StepReport};
 use psd_plan::record::IS_OUTSIDE;
 use psd_plan::record::{Event, EventKind};
+use psd_text::count::counted;
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
@@ -119,6 +120,8 @@ pub struct Lines {
     printed: Option<Instant>,
     /// The time left of the run, if it is known.
     pub left: Option<Duration>,
+    /// The end of the last step.
+    pub now: Option<Instant>,
     /// Number of the last step.
     last: Option<u64>,
     /// Largest |X| \[m\] and |R| \[N\] of the steps.
@@ -168,7 +171,7 @@ impl Lines {
     fn line(&self, name: &str) -> String {
         let mut text = format!("  {}: {}", escape(name), self.keyword);
         if let Some(step) = self.last {
-            let steps = if step == 1 { "step" } else { "steps" };
+            let steps = counted(step, "step", "steps");
             let (displacement, force) = self.largest;
             let (displacement, force) = (
                 readable(displacement, Dimension::LENGTH),
@@ -176,7 +179,7 @@ impl Lines {
             );
             let _ = write!(
                 text,
-                ", {step} {steps}, largest X {displacement}, largest R {force}{}",
+                ", {steps}, largest X {displacement}, largest R {force}{}",
                 self.shown.of_rig
             );
         }
@@ -214,9 +217,10 @@ impl Observer for Lines {
                 self.largest.1.max(axis.force.abs()),
             );
         }
-        let due = self.printed.is_some_and(|at| at.elapsed() >= BETWEEN_LINES);
+        let since = self.now.zip(self.printed);
+        let due = since.is_some_and(|(now, at)| now.duration_since(at) >= BETWEEN_LINES);
         if due && !self.silent {
-            self.printed = Some(Instant::now());
+            self.printed = self.now;
             print_message(&self.progress(report));
         }
     }

@@ -629,11 +629,9 @@ impl<'a> Checker<'a> {
                 part: ResultPart::Value,
             };
             let outside = self.results.iter().find(|(of, _)| *of == reference);
-            if let Some((_, outside)) = outside {
-                return Some(Typed {
-                    span,
-                    ..outside.clone()
-                });
+            if let Some((_, outside)) = outside.cloned() {
+                let typed = self.read_again(&outside);
+                return Some(Typed { span, ..typed });
             }
             self.read.push((reference, span));
             let formula = Formula::Result(reference);

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::check::checker::{Checker, Context, Reads, Typed};
+use crate::check::checker::{Checker, Context, Reads, Traced, Typed};
 use crate::check::rig;
 use crate::check::scope::{Meaning, Scope, Setting};
 use crate::check::violations::{NotFinite, OutOfRange, WrongDimensionOfQuantity};
@@ -450,16 +450,16 @@ impl<'a> Checker<'a> {
             return;
         };
         let head = self.scope.blocks[owner].block.head;
-        let typed = match setting {
-            Setting::Written(set) => self.setting(set, dimension, name),
-            Setting::Bound(quantity) if quantity.dimension == dimension => {
-                let formula = Formula::Constant(quantity.value);
+        let Traced { value, is_bound } = self.traced(|checker| match setting {
+            Setting::Written(set) => checker.setting(set, dimension, name),
+            Setting::Bound(input) if input.dimension == dimension => {
+                let formula = Formula::Constant(checker.bound_value(*input).value);
                 Some(Typed::number(formula, dimension, head))
             }
             Setting::Bound(_) => None,
-        };
-        if let Some(typed) = typed {
-            self.results.push((reference, typed));
+        });
+        if let Some(value) = value {
+            self.results.push((reference, Traced { value, is_bound }));
         }
     }
 
@@ -484,14 +484,21 @@ impl<'a> Checker<'a> {
         let dimension = field.dimension()?;
         Some(match setting {
             Setting::Written(set) => self.setting(set, dimension, name).map(|typed| (typed, set)),
-            Setting::Bound(quantity) => self
-                .bound(field, *quantity, written.span)
-                .map(|typed| (typed, written)),
+            Setting::Bound(input) => {
+                let quantity = self.bound_value(*input);
+                self.typed_bound(field, quantity, written.span)
+                    .map(|typed| (typed, written))
+            }
         })
     }
 
     /// A number that is bound without any text; its range is checked here, because no text shows it.
-    fn bound(&mut self, field: &'static Field, quantity: Quantity, span: Span) -> Option<Typed> {
+    fn typed_bound(
+        &mut self,
+        field: &'static Field,
+        quantity: Quantity,
+        span: Span,
+    ) -> Option<Typed> {
         let dimension = field.dimension()?;
         if quantity.dimension != dimension {
             return self.fail(WrongDimensionOfQuantity {

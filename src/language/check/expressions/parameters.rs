@@ -212,11 +212,12 @@ impl<'a> Checker<'a> {
                 let set = self.single(written, context)?;
                 self.expect(set, own.dimension, name, written)?
             }
-            Setting::Bound(quantity) => {
+            Setting::Bound(input) => {
+                let quantity = self.bound_value(*input);
                 let span = declared.value.span;
                 if quantity.dimension != own.dimension {
                     return self.fail(WrongDimensionOfQuantity {
-                        bound: *quantity,
+                        bound: quantity,
                         wanted: own.dimension,
                         parameter: name,
                         declared_at: span,
@@ -233,7 +234,7 @@ impl<'a> Checker<'a> {
         if !bounds.contains(value) {
             let (name, text) = match setting {
                 Setting::Written(_) => (format!("--set {name}"), self.text(set.span).to_owned()),
-                Setting::Bound(quantity) => (name.clone(), quantity.in_plan_syntax()),
+                Setting::Bound(input) => (name.clone(), self.bound_value(*input).in_plan_syntax()),
             };
             let at = declared
                 .bounds
@@ -269,28 +270,21 @@ impl<'a> Checker<'a> {
         Some(interval)
     }
 
-    /// The parameters of the run, in the order of declaration.
-    pub fn parameters(&mut self) -> Vec<Parameter> {
-        let mut parameters = Vec::new();
-        for index in 0..self.scope.values.len() {
-            let declared = &self.scope.values[index];
-            let was_used = self.used.contains(&index);
-            let typed = self.declared_value(index, declared.name.span);
-            if !was_used {
-                self.used.remove(&index);
-            }
-            if let ("param", Some(typed)) = (declared.keyword, typed)
-                && let (Shape::Number, Some(value)) = (typed.shape, typed.constant())
-            {
-                let set = declared.setting.is_some();
-                parameters.push(Parameter {
-                    name: declared.name.node.clone(),
-                    value,
-                    dimension: typed.dimension,
-                    set,
-                });
-            }
+    /// The parameter of the run that is declared here; None for a `let`.
+    pub fn parameter(&mut self, index: usize) -> Option<Parameter> {
+        let declared = &self.scope.values[index];
+        let was_used = self.used.contains(&index);
+        let typed = self.declared_value(index, declared.name.span);
+        if !was_used {
+            self.used.remove(&index);
         }
-        parameters
+        let typed =
+            typed.filter(|typed| declared.keyword == "param" && typed.shape == Shape::Number)?;
+        Some(Parameter {
+            name: declared.name.node.clone(),
+            value: typed.constant()?,
+            dimension: typed.dimension,
+            set: declared.setting.is_some(),
+        })
     }
 }

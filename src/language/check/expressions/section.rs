@@ -106,12 +106,13 @@ impl<'a> Checker<'a> {
 
     /// A shape with its dimensions, each of which is known before the run. It is evaluated once, wherever it is read.
     pub fn section(&mut self, written: &'a Expr, context: Context) -> Option<Section> {
-        if let Some(known) = self.sections.get(&written.span) {
-            return *known;
+        if let Some(known) = self.sections.get(&written.span).cloned() {
+            return self.read_again(&known);
         }
-        let section = self.new_section(written, context);
+        let section = self.traced(|checker| checker.new_section(written, context));
+        let value = section.value;
         self.sections.insert(written.span, section);
-        section
+        value
     }
 
     fn new_section(&mut self, written: &'a Expr, context: Context) -> Option<Section> {

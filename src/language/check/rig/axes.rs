@@ -10,6 +10,7 @@ use crate::codes::E615;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
+use psd_text::count::counted_in_words;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -445,9 +446,5 @@ fn check_members(checker: &mut Checker, frame: &Frame, axes: &[AxisPlan], block:
 
 /// `one storey`, or `3 storeys`.
 fn members_of(word: &str, count: usize) -> String {
-    if count == 1 {
-        format!("one {word}")
-    } else {
-        format!("{count} {word}s")
-    }
+    counted_in_words(count, word, &format!("{word}s"))
 }

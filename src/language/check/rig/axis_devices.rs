@@ -7,6 +7,7 @@ use crate::check::wording::axes_of;
 use crate::codes::{E611, E615, E616, E636, E637};
 use psd_plan::schema::rig as schema;
 use psd_plan::{Abilities, Dialect, PortPlan};
+use psd_text::count::counted_in_words;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -148,11 +149,7 @@ impl Violation for ControlPointsDiffer {
 
     fn diagnostic(self) -> Diagnostic {
         let Self { points, axes, at } = self;
-        let named = if points == 1 {
-            "one control point".to_owned()
-        } else {
-            format!("{points} control points")
-        };
+        let named = counted_in_words(points, "control point", "control points");
         let names: Vec<String> = (1..=axes.max(2))
             .map(|axis| format!("MDL-00-{axis:02}"))
             .collect();
@@ -203,11 +200,7 @@ impl Violation for TooFewChannels<'_> {
             dialect,
             at,
         } = self;
-        let has = if channels == 1 {
-            "one channel".to_owned()
-        } else {
-            format!("{channels} channels")
-        };
+        let has = counted_in_words(channels, "channel", "channels");
         let help = match dialect {
             Dialect::Scpi { .. } => {
                 "write the force per unit of each channel, the lowest axis first: `scpi([2.5 kN, 1.2 kN])`"

@@ -320,7 +320,7 @@ fn tests_a_part(
             .scope
             .of_kind(Kind::Specimen)
             .nth(kind.specimen()?)?;
-        Assemblies::of(checker.frames.get(&block)?.as_deref()?)
+        Assemblies::of(checker.frames.get(&block)?.value.as_deref()?)
     };
     tested().is_some()
 }

@@ -6,5 +6,6 @@ pub mod confusables;
 pub mod letters;
 pub mod long_lines;
 pub mod numbers;
+pub mod symbols;
 pub mod tokens;
 pub mod unit_tokens;

@@ -114,6 +114,13 @@ fn precedence_is_that_of_the_language() {
             "a + b within 1 mm + c of d - e",
             "((a + b) within (1 mm + c) of (d - e))",
         ),
+        ("2 ^ -1 * 3", "((2 ^ (- 1)) * 3)"),
+        ("2 ^ -a ^ b", "(2 ^ (- (a ^ b)))"),
+        ("3 within (1 mm) of 2", "(3 within <1 mm> of 2)"),
+        (
+            "a.b in 1 .. 2 and c < 3",
+            "(((a . b) in (1 .. 2)) and (c < 3))",
+        ),
         ("2 m^2", "2 m^2"),
         ("(2 m)^2", "(<2 m> ^ 2)"),
         ("N/m * 2", "((N / m) * 2)"),

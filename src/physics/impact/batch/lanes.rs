@@ -77,7 +77,7 @@ impl LaneStart {
         let striker = [0.0 - input.gap, input.striker_velocity];
         let secant = Secant::of(input.stiffness);
         Self {
-            state: BetweenSteps::at_rest([0.0; 2], striker, secant, inputs.striker.energy),
+            state: BetweenSteps::at_rest([0.0; 3], striker, secant, inputs.striker.energy),
             specimen: match specimen {
                 LaneSpecimen::Elastic(model) => BilinearLines {
                     stiffness: model.stiffness,
@@ -119,7 +119,7 @@ impl LaneStart {
         Self {
             inputs,
             specimen,
-            state: BetweenSteps::at_rest([0.0; 2], striker, Secant::of(0.0), 0.0),
+            state: BetweenSteps::at_rest([0.0; 3], striker, Secant::of(0.0), 0.0),
         }
     }
 }
@@ -225,12 +225,13 @@ impl Lanes {
             let get = |row: &LaneRow| part.get(row);
             let set = |row: &mut LaneRow, numbers| part.set(row, numbers);
             let before = from.map(get);
-            let force = |start, displacement| {
-                if YIELDS {
+            let read = |start: [_; 2], [displacement, _]: [_; 2]| {
+                let force = if YIELDS {
                     specimen.map(get).force(start, displacement)
                 } else {
                     get(&specimen.stiffness) * displacement
-                }
+                };
+                [force, displacement - start[0]]
             };
             let (
                 state,
@@ -239,7 +240,7 @@ impl Lanes {
                     stopped,
                     over,
                 },
-            ) = end_step::<_, LIMITED>(&inputs.map(get), &before, also, force);
+            ) = end_step::<_, LIMITED>(&inputs.map(get), &before, also, read);
             to.motion.each(state.motion, set);
             to.secant.each(state.secant, set);
             to.work.each(state.work, set);

@@ -154,7 +154,7 @@ impl RecordedPath {
         let mut index = piece;
         // On either side of the point at which the curve was left and later continued.
         let piece = loop {
-            let piece = self.pieces[index];
+            let piece = &self.pieces[index];
             let direction = self.branches[piece.branch].direction;
             let beyond = |reading: &Reading| (position - reading.target) * direction;
             index = match (piece.before, piece.after) {
@@ -167,9 +167,9 @@ impl RecordedPath {
         let count = piece.last + 1 - piece.first;
         let reading = |point: usize| {
             if point == 0 {
-                piece.begin
+                &piece.begin
             } else {
-                self.readings[piece.first + point - 1]
+                &self.readings[piece.first + point - 1]
             }
         };
         let mut from = (step + 1).saturating_sub(piece.first).min(count);
@@ -187,7 +187,7 @@ impl RecordedPath {
                 break;
             };
             let (near, far) = (reading(from), reading(next));
-            let off = |reading: Reading| (reading.target - here.target).abs();
+            let off = |reading: &Reading| (reading.target - here.target).abs();
             // Between the two, or at one of them. Nearby, the noise of this reading applies and not that of its neighbours: the
             // force continues from here to the first reading that is far enough to determine a slope.
             if off(far) >= (position - here.target).abs()
@@ -306,6 +306,7 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step, which is passed with a velocity \[m/s\].
+    #[inline]
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let speed = self
             .path
@@ -539,13 +540,11 @@ impl<'a> Retrace<'a> {
 
     fn read(&self) -> (f64, f64) {
         let (displacement, force) = self.recorded();
-        let step = self.looked_from();
-        let recorded = self.path.readings[step].force;
-        let actual = self
-            .path
-            .continuous
-            .as_ref()
-            .map(|continuous| continuous.force(step, force - recorded, self.speed.actual));
+        let actual = self.path.continuous.as_ref().map(|continuous| {
+            let step = self.looked_from();
+            let recorded = self.path.readings[step].force;
+            continuous.force(step, force - recorded, self.speed.actual)
+        });
         (displacement, actual.unwrap_or(force))
     }
 }

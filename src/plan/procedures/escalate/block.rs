@@ -3,7 +3,7 @@
 use crate::ProcedureBlock;
 use crate::procedures::impact::block as impact;
 use crate::schema::methods::TRUTH;
-use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Peak, Possible, ResultKind, Variant};
 use psd_text::units::Dimension;
 
 pub const SPEEDS: Field = Field::quantities(
@@ -78,13 +78,15 @@ const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
 pub const IMPACTS: ResultKind = ResultKind::count(
     "impacts",
     "number of impacts, including one that failed or was inconclusive",
-);
+)
+.final_after(Peak::LastImpact);
 
 pub const PASSED: ResultKind = ResultKind::count(
     "passed",
     "number of impacts after which the condition was true",
 )
-.decided_by_condition();
+.decided_by_condition()
+.final_after(Peak::LastImpact);
 
 pub const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     "last_passed_energy",
@@ -92,7 +94,8 @@ pub const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     "energy of the last impact after which the condition was true; 0 if false after the first",
 )
 .decided_by_condition()
-.made_of(&impact::STRIKER_ENERGY);
+.made_of(&impact::STRIKER_ENERGY)
+.final_after(Peak::LastImpact);
 
 pub const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
     "first_failed_energy",
@@ -114,13 +117,15 @@ pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
     "unloaded position after the last impact, with `between = unload`",
-);
+)
+.final_after(Peak::PositionAfter);
 
 pub const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
     Dimension::LENGTH,
     "position after the last impact, with `between = home` or `stay`",
-);
+)
+.final_after(Peak::PositionAfter);
 
 pub const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
@@ -154,13 +159,15 @@ pub const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "residual_displacements",
     Dimension::LENGTH,
     "unloaded position after each impact, with `between = unload`",
-);
+)
+.final_after(Peak::PositionAfter);
 
 pub const FINAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "final_displacements",
     Dimension::LENGTH,
     "position after each impact, with `between = home` or `stay`",
-);
+)
+.final_after(Peak::PositionAfter);
 
 pub const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
     "absorbed_energies",
@@ -194,14 +201,16 @@ pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "drift of each unloaded storey after the last impact, with `between = unload`",
 )
-.of_storey();
+.of_storey()
+.final_after(Peak::DriftAfter);
 
 pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
     "drift of each storey after the last impact, with `between = home` or `stay`",
 )
-.of_storey();
+.of_storey()
+.final_after(Peak::DriftAfter);
 
 pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",

@@ -3,7 +3,7 @@
 use crate::ProcedureBlock;
 use crate::procedures::shake::block as shake;
 use crate::schema::procedures::{SPECIMEN, STIFFNESS, tracking};
-use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Peak, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
 use psd_physics::contact::argument;
 use psd_text::units::Dimension;
@@ -85,14 +85,16 @@ pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     Dimension::LENGTH,
     "largest displacement of the structure",
 )
-.within(Possible::LargestDisplacement);
+.within(Possible::LargestDisplacement)
+.final_after(Peak::Displacement);
 
 pub const TIME_OF_MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "time_of_max_displacement",
     Dimension::TIME,
     "simulated time of the largest displacement",
 )
-.within(Possible::NotNegative);
+.within(Possible::NotNegative)
+.final_after(Peak::InstantOfDisplacement);
 
 pub const STOP_TIME: ResultKind = ResultKind::measured(
     "stop_time",
@@ -112,7 +114,8 @@ pub const MAX_VELOCITY: ResultKind = ResultKind::measured(
     Dimension::VELOCITY,
     "peak absolute velocity of the structure",
 )
-.within(Possible::NotNegative);
+.within(Possible::NotNegative)
+.final_after(Peak::Velocity);
 
 pub const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     "max_contact_force",
@@ -120,7 +123,8 @@ pub const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     "largest step-mean contact force; grows as 1/Δt under `rigid`, `restitution` and an unreached `limit`",
 )
 .within(Possible::NotNegative)
-.grows_as_inverse_step();
+.grows_as_inverse_step()
+.final_after(Peak::ContactForce);
 
 pub const IMPULSE: ResultKind = ResultKind::measured(
     "impulse",
@@ -156,7 +160,8 @@ pub const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
     Dimension::ENERGY,
     "restoring force integrated up to the largest displacement",
-);
+)
+.final_after(Peak::InstantOfDisplacement);
 
 pub const RESTORING_ENERGY: ResultKind = ResultKind::measured(
     "restoring_energy",
@@ -216,7 +221,8 @@ pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "peak absolute displacement of each floor",
 )
 .within(Possible::PeakDisplacement)
-.of_storey();
+.of_storey()
+.final_after(Peak::FloorDisplacement);
 
 pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
@@ -225,7 +231,8 @@ pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
 )
 .within(Possible::NotNegative)
 .of_each_member()
-.of_storey();
+.of_storey()
+.final_after(Peak::Drift);
 
 pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
@@ -248,7 +255,8 @@ pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     Dimension::FORCE,
     "peak absolute base shear, net of P-Δ, minus the part due to noise",
 )
-.of_storey();
+.of_storey()
+.final_after(Peak::BaseShear);
 
 pub const MAX_ELEMENT_FORCE: ResultKind = shake::MAX_ELEMENT_FORCE.of_storey();
 

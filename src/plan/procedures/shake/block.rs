@@ -2,7 +2,7 @@
 
 use crate::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, tracking};
-use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Peak, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
 use psd_text::units::Dimension;
 
@@ -11,7 +11,8 @@ pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "peak absolute displacement of each floor, relative to the ground",
 )
-.within(Possible::PeakDisplacement);
+.within(Possible::PeakDisplacement)
+.final_after(Peak::FloorDisplacement);
 
 pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
@@ -19,7 +20,8 @@ pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "peak absolute drift of each storey, or deformation of each element",
 )
 .within(Possible::NotNegative)
-.of_each_member();
+.of_each_member()
+.final_after(Peak::Drift);
 
 pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
@@ -36,7 +38,8 @@ pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
     "peak absolute base shear, net of P-Δ, minus the part due to noise",
-);
+)
+.final_after(Peak::BaseShear);
 
 pub const MAX_ELEMENT_FORCE: ResultKind = ResultKind::measured_list(
     "max_element_force",
@@ -45,7 +48,8 @@ pub const MAX_ELEMENT_FORCE: ResultKind = ResultKind::measured_list(
 )
 .within(Possible::NotNegative)
 .of_each_member()
-.of_elements();
+.of_elements()
+.final_after(Peak::ElementForce);
 
 pub const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",

@@ -152,49 +152,57 @@ pub const TIME_CONSTANT: ResultKind = ResultKind::measured(
     "time_constant",
     Dimension::TIME,
     "τ of the relaxation, with `relaxation`",
-);
+)
+.fitted_to_dwells();
 
 pub const RELAXED_STIFFNESS: ResultKind = ResultKind::measured(
     "relaxed_stiffness",
     Dimension::STIFFNESS,
     "slope of the fully relaxed forces",
-);
+)
+.fitted_to_dwells();
 
 pub const BRANCH_STIFFNESS: ResultKind = ResultKind::measured(
     "branch_stiffness",
     Dimension::STIFFNESS,
     "stiffness of the relaxing part of a standard linear solid",
-);
+)
+.fitted_to_dwells();
 
 pub const REMAINING_RELAXATION: ResultKind = ResultKind::measured(
     "remaining_relaxation",
     Dimension::FORCE,
     "largest remaining relaxation at the end of a pause",
-);
+)
+.fitted_to_dwells();
 
 pub const REQUIRED_PAUSE: ResultKind = ResultKind::measured(
     "required_pause",
     Dimension::TIME,
     "required dwell time for the requested `accuracy` or `rate`",
-);
+)
+.fitted_to_dwells();
 
 pub const RELAXATION_SHARE: ResultKind = ResultKind::measured(
     "relaxation_share",
     Dimension::NUMBER,
     "a or g: relaxed fraction of the unrelaxed force; only laws with a fraction",
-);
+)
+.fitted_to_dwells();
 
 pub const REFERENCE_TIME: ResultKind = ResultKind::measured(
     "reference_time",
     Dimension::TIME,
     "t₀ of the logarithmic law",
-);
+)
+.fitted_to_dwells();
 
 pub const RELAXATION_RATE: ResultKind = ResultKind::measured(
     "relaxation_rate",
     Dimension::FORCE_RATE,
     "largest force rate at the end of a pause",
-);
+)
+.fitted_to_dwells();
 
 pub const BIC_MARGIN: ResultKind = ResultKind::new(
     "bic_margin",

@@ -1,6 +1,6 @@
 //! The history of an unloading: the floors after every move; one degree of freedom is one floor. In: numbers of a run, SI. It moves nothing.
 
-use crate::record::history::floors::{Floors, FloorsAt, drift_of, shear_of};
+use crate::record::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 use psd_physics::structure::elements::ElementReading;
 
@@ -53,6 +53,24 @@ impl Floors for UnloadStep {
             tracking: &[],
         }
     }
+}
+
+/// The moves of an unloading.
+#[derive(Clone, Debug)]
+pub struct UnloadHistory {
+    pub of: Unloaded,
+    pub steps: Vec<UnloadStep>,
+}
+
+/// The part of a specimen that an unloading moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unloaded {
+    /// One degree of freedom. The start is not among the steps.
+    OneAxis,
+    /// All floors of a frame.
+    Floors,
+    /// All elements of a frame of matrices.
+    Elements,
 }
 
 /// The rest position of a specimen, floor by floor or element by element; one degree of freedom is one floor.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::codes::E640;
 use crate::procedures::common::violations::NoUseOnAFrame;
-use crate::procedures::shake;
+use crate::procedures::stepping::check::damping_check;
 use psd_language::check::checker::{Checker, Shape};
 use psd_language::check::declarations::specimen;
 use psd_language::check::expressions::fields::whole;
@@ -16,6 +16,7 @@ use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames;
 use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
+use psd_text::count::counted_in_words;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -92,8 +93,8 @@ pub(crate) fn storey(
             foreign = true;
         }
     }
-    let damping = shake::check::damping(checker, block);
-    let damping_uncertainty = shake::check::damping_uncertainty(checker, block, damping.as_ref());
+    let damping = damping_check::damping(checker, block);
+    let damping_uncertainty = damping_check::damping_uncertainty(checker, block, damping.as_ref());
     if foreign {
         return None;
     }
@@ -137,11 +138,7 @@ impl Violation for NoSuchStorey<'_> {
             at,
             declared,
         } = self;
-        let has = if storeys == 1 {
-            "one storey".to_owned()
-        } else {
-            format!("{storeys} storeys")
-        };
+        let has = counted_in_words(storeys, "storey", "storeys");
         Diagnostic::new(
             Self::CODE,
             format!(

@@ -1,13 +1,9 @@
 //! Charts of an impact (paper, Figs. 9–11 and 16). In: the steps of one impact. Out: [`Chart`]s in SI.
 
-use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
-use crate::report::Run;
 use crate::report::figures::chart::{
     Band, Chart, DASHED, DOTTED, Quantity, Reference, SOLID, Series, Style, palette,
 };
-use psd_plan::ProcedureKind;
-use psd_plan::formula::ProcedureId;
 use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
 use psd_text::units::Dimension;
 
@@ -131,15 +127,6 @@ pub(crate) fn force_displacement(history: &ImpactHistory) -> Chart {
             style: Style::line(palette::BLUE, 1.8, SOLID),
         }],
     )
-}
-
-/// The name of the energy that the contact took.
-pub(crate) fn energy_of_contact(run: &Run<'_>, procedure: ProcedureId) -> &'static str {
-    let planned = run.plan.procedures.get(procedure.0);
-    match planned.map(|planned| &planned.kind) {
-        Some(ProcedureKind::Impact(impact)) => contact::energy(&impact.contact),
-        _ => "transferred in contact",
-    }
 }
 
 /// The parts of the balance and their total; a part that is 0 throughout is not drawn.

@@ -4,12 +4,13 @@ pub(crate) mod charts;
 pub(crate) mod storey;
 
 use crate::procedures::common::limit_lines::limits_on;
+use crate::procedures::impact::contact;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::ImpactHistory;
-use psd_plan::{Figure, FigureKind};
+use psd_plan::{Figure, FigureKind, Impact};
 use psd_text::units::Dimension;
 
 /// Figures of an impact on one degree of freedom, in the order of a report.
@@ -49,16 +50,50 @@ pub(crate) const SHARED: &[FigureKind] = &[
 /// A figure of an impact and its caption; None before the first step, or for a figure of a different procedure.
 pub(crate) fn chart(
     run: &Run<'_>,
+    impact: &Impact,
     name: &str,
     history: &ImpactHistory,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
-    if let Some(struck) = &history.frame {
-        return storey::chart(run, name, history, struck, figure);
-    }
-    if history.steps.is_empty() {
+    let of_frame = history.frame.as_ref();
+    if of_frame.map_or(history.steps.is_empty(), |frame| frame.floors.is_empty()) {
         return None;
     }
+    Some(match (figure.kind, of_frame) {
+        (FigureKind::StrikerVelocity, _) => (
+            charts::striker_velocity(history),
+            format!(
+                "{name}: velocity of the striker against simulated time; each drop is a contact."
+            ),
+        ),
+        (FigureKind::ContactForce, _) => (
+            charts::contact_force(
+                history,
+                &limits_on(run, figure.procedure, schema::MAX_CONTACT_FORCE),
+            ),
+            format!("{name}: contact force, mean over each step, against simulated time."),
+        ),
+        (FigureKind::Energy, _) => {
+            let together = of_frame.map_or("", |_| ", all storeys together");
+            (
+                charts::energy(history, contact::energy(&impact.contact)),
+                format!(
+                    "{name}: parts of the striker's energy{together}; their total is the energy put in, if the balance closes."
+                ),
+            )
+        }
+        (_, Some(frame)) => return storey::chart(run, name, history, frame, figure),
+        (_, None) => return of_point(run, name, history, figure),
+    })
+}
+
+/// A figure of one degree of freedom alone.
+fn of_point(
+    run: &Run<'_>,
+    name: &str,
+    history: &ImpactHistory,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
     Some(match figure.kind {
         FigureKind::Displacement => (
             charts::displacement(
@@ -73,29 +108,10 @@ pub(crate) fn chart(
             charts::velocity(history),
             format!("{name}: velocity of the structure and of the striker against simulated time."),
         ),
-        FigureKind::StrikerVelocity => (
-            charts::striker_velocity(history),
-            format!(
-                "{name}: velocity of the striker against simulated time; each drop is a contact."
-            ),
-        ),
-        FigureKind::ContactForce => (
-            charts::contact_force(
-                history,
-                &limits_on(run, figure.procedure, schema::MAX_CONTACT_FORCE),
-            ),
-            format!("{name}: contact force, mean over each step, against simulated time."),
-        ),
         FigureKind::ForceDisplacement => (
             charts::force_displacement(history),
             format!(
                 "{name}: restoring force against computed displacement; the area below is the absorbed energy."
-            ),
-        ),
-        FigureKind::Energy => (
-            charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
-            format!(
-                "{name}: parts of the striker's energy; their total is the energy put in, if the balance closes."
             ),
         ),
         FigureKind::Tracking => (

@@ -3,8 +3,8 @@
 
 use super::charts;
 use crate::procedures::common::limit_lines::limits_on;
-use crate::procedures::shake;
-use crate::procedures::shake::figures::charts::entries_of;
+use crate::procedures::frame;
+use crate::procedures::frame::charts::entries_of;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
 use psd_plan::procedures::impact::block as schema;
@@ -13,56 +13,50 @@ use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
 
-/// A figure and its caption; None before the first step, or for a figure of a different procedure.
-pub(crate) fn chart(
+/// A figure of a frame alone, and its caption; None for a figure of a different procedure.
+pub(super) fn chart(
     run: &Run<'_>,
     name: &str,
     history: &ImpactHistory,
     frame: &StruckFrame,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
-    if frame.floors.is_empty() {
-        return None;
-    }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
-    let chosen = shake::figures::charts::chosen_members(&frame.floors);
+    let chosen = frame::charts::chosen_members(&frame.floors);
     let struck = frame.struck + 1;
     Some(match figure.kind {
         FigureKind::Modes => (
-            shake::figures::charts::modes(frame.modes.as_ref()?),
-            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
+            frame::charts::modes(frame.modes.as_ref()?),
+            frame::captions::modes(name),
         ),
         FigureKind::Displacement => {
-            let mut chart = shaded(history, shake::figures::charts::displacement(&frame.floors));
+            let mut chart = shaded(history, frame::charts::displacement(&frame.floors));
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
             let floor = entries_of(frame.floors.first().is_some_and(Floors::has_elements));
             let caption = format!(
                 "{name}: displacement of each {floor}, and of the striker while near {floor} {struck}, against simulated time{}.",
-                shake::figures::charts::chosen_floors(&frame.floors)
+                frame::charts::chosen_floors(&frame.floors)
             );
             (chart, caption)
         }
         FigureKind::Drift => (
             shaded(
                 history,
-                shake::figures::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
+                frame::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
-            shake::figures::drifts(run, name, chosen),
+            frame::captions::drifts(run, name, chosen),
         ),
         FigureKind::Hysteresis => (
-            shake::figures::charts::hysteresis(&frame.floors),
-            shake::figures::loops(run, name, chosen),
+            frame::charts::hysteresis(&frame.floors),
+            frame::captions::loops(run, name, chosen),
         ),
         FigureKind::BaseShear => (
             shaded(
                 history,
-                shake::figures::charts::base_shear(&frame.floors, &limits(schema::MAX_BASE_SHEAR)),
+                frame::charts::base_shear(&frame.floors, &limits(schema::MAX_BASE_SHEAR)),
             ),
-            format!(
-                "{name}: base shear, the sum of the {}, against simulated time.",
-                shake::figures::restoring_forces(run)
-            ),
+            frame::captions::base_shear(run, name),
         ),
         FigureKind::Velocity => {
             let mut chart =
@@ -85,25 +79,9 @@ pub(crate) fn chart(
                 ),
             )
         }
-        FigureKind::StrikerVelocity => (
-            charts::striker_velocity(history),
-            format!(
-                "{name}: velocity of the striker against simulated time; each drop is a contact."
-            ),
-        ),
-        FigureKind::ContactForce => (
-            charts::contact_force(history, &limits(schema::MAX_CONTACT_FORCE)),
-            format!("{name}: contact force, mean over each step, against simulated time."),
-        ),
-        FigureKind::Energy => (
-            charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
-            format!(
-                "{name}: parts of the striker's energy, all storeys together; their total is the energy put in, if the balance closes."
-            ),
-        ),
         FigureKind::Tracking => (
-            shaded(history, shake::figures::charts::tracking(&frame.floors)),
-            shake::figures::followed(run, name, chosen),
+            shaded(history, frame::charts::tracking(&frame.floors)),
+            frame::captions::followed(run, name, chosen),
         ),
         _ => return None,
     })

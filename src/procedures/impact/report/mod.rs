@@ -1,10 +1,9 @@
-//! An impact on one degree of freedom, as a report states it: the limits of its peak force, the integration, the energy balance, the
+//! An impact as a report states it, on one degree of freedom or (`storey`) on a frame: the limits of its peak force, the integration, the energy balance, the
 //! contact log. In: a plan and a record. Out: blocks.
 
 pub(crate) mod contact_log;
 pub(crate) mod storey;
 
-use crate::procedures;
 use crate::procedures::impact::contact;
 use crate::procedures::stepping::{self, energy};
 use crate::report::document::Block;
@@ -14,7 +13,7 @@ use psd_plan::procedures::damping_sweep::block as damping_sweep;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{ImpactHistory, ProcedureRecord};
 use psd_plan::schema::procedures::tracking as tracking_schema;
-use psd_plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
+use psd_plan::{Contact, Impact, Integrator, PointTarget};
 use psd_text::units::Dimension;
 
 /// Results that have a budget even if no requirement reads any.
@@ -61,59 +60,65 @@ pub(crate) fn undamped(point: &PointTarget) -> Vec<&'static str> {
 /// The blocks below its results.
 pub(crate) fn report(
     run: &Run<'_>,
-    index: usize,
+    impact: &Impact,
     procedure: &ProcedureRecord,
     history: &ImpactHistory,
     body: &mut Vec<Block>,
 ) {
-    force_note(run, index, procedure, history, body);
-    method_note(run, index, procedure, history, body);
-    energy_balance(contact_work(run, index), history, body);
+    if let Some(struck) = &history.frame {
+        storey::report(run, impact, procedure, history, struck, body);
+        return;
+    }
+    if let Some(point) = impact.point() {
+        let sentences = force_note(run, impact, point, procedure, history);
+        body.push(Block::paragraph(sentences.join(" ")));
+    }
+    body.push(method_note(impact, procedure, history));
+    at_the_end(impact, procedure, history, body);
+}
+
+/// The energy balance and the contact log.
+fn at_the_end(
+    impact: &Impact,
+    procedure: &ProcedureRecord,
+    history: &ImpactHistory,
+    body: &mut Vec<Block>,
+) {
+    energy_balance(contact::work(&impact.contact), history, body);
     contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
+}
+
+/// The peak contact force and the impulse; None without a step.
+fn peak_force(procedure: &ProcedureRecord, time_step: &str) -> Option<String> {
+    let peak = procedure.number(schema::MAX_CONTACT_FORCE.name)?;
+    let impulse = procedure.number(schema::IMPULSE.name)?;
+    Some(format!(
+        "Peak contact force {} with an impulse of {} at {time_step}.",
+        number::text(peak, Dimension::FORCE),
+        number::text(impulse, Dimension::IMPULSE)
+    ))
 }
 
 /// The peak contact force with its impulse, time step and contact law.
 fn force_note(
     run: &Run<'_>,
-    index: usize,
+    impact: &Impact,
+    point: &PointTarget,
     procedure: &ProcedureRecord,
     history: &ImpactHistory,
-    body: &mut Vec<Block>,
-) {
-    let Some(ProcedureKind::Impact(impact)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
-    let Some(point) = impact.point() else { return };
+) -> Vec<String> {
     let step = number::text(history.time_step, Dimension::TIME);
     let critical = number::text(history.critical_time_step, Dimension::TIME);
-    let forces = match (
-        procedure.number(schema::MAX_CONTACT_FORCE.name),
-        procedure.number(schema::IMPULSE.name),
-    ) {
-        (Some(peak), Some(impulse)) => format!(
-            "Peak contact force {} with an impulse of {} at a time step of {step}.",
-            number::text(peak, Dimension::FORCE),
-            number::text(impulse, Dimension::IMPULSE)
-        ),
-        _ => format!("Time step {step}."),
-    };
+    let force = peak_force(procedure, &format!("a time step of {step}"));
     let mut sentences = vec![
         format!("Contact law: {}.", impact.contact.title()),
-        forces,
+        force.unwrap_or_else(|| format!("Time step {step}.")),
         format!("Critical time step (Melo et al. 2006, eq. 7) {critical}."),
     ];
-    if matches!(impact.contact, Contact::Rigid) {
-        sentences.push(
-            "Under the rigid law the contact force is inversely proportional to the time step. Only the impulse is a \
-             property of the impact."
-                .to_owned(),
-        );
-        sentences.extend(implied_restitution(run, procedure, impact, point));
-    }
+    sentences.extend(contact::note(&impact.contact).map(str::to_owned));
+    sentences.extend(implied_restitution(run, procedure, impact, point));
     sentences.extend(damping_range(run, procedure, point));
-    body.push(Block::paragraph(sentences.join(" ")));
+    sentences
 }
 
 /// The extrapolation of the damping of a sweep beyond the velocities at which it was measured.
@@ -154,39 +159,23 @@ fn implied_restitution(
         .iter()
         .find(|(name, ..)| *name == schema::MASS.name)
         .map(|(_, estimate, _)| estimate.value);
-    let striker = run
-        .plan
-        .strikers
-        .get(impact.striker)
-        .map(|striker| striker.mass);
-    let (mass, striker) = (mass.or_else(|| point.mass.constant())?, striker?);
-    let restitution = striker / (striker + 2.0 * mass);
+    let mass = mass.or_else(|| point.mass.constant())?;
+    let striker = run.plan.strikers.get(impact.striker)?.mass;
+    let implied = contact::implied_restitution(&impact.contact, striker, mass)?;
     Some(format!(
-        "It implies a coefficient of restitution e = Ms/(Ms + 2M) = {} (Ms striker mass, M equivalent mass of the structure).",
-        number::text(restitution, Dimension::NUMBER)
+        "It implies {implied} (Ms striker mass, M equivalent mass of the structure)."
     ))
 }
 
 /// The integration and the tracking.
-fn method_note(
-    run: &Run<'_>,
-    index: usize,
-    procedure: &ProcedureRecord,
-    history: &ImpactHistory,
-    body: &mut Vec<Block>,
-) {
-    let Some(ProcedureKind::Impact(impact)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
+fn method_note(impact: &Impact, procedure: &ProcedureRecord, history: &ImpactHistory) -> Block {
     let mut sentences = vec![integrator(impact)];
     sentences.extend(actuators::motion(
         impact.stepping.i_modification,
         impact.stepping.mode,
     ));
     sentences.extend(tracking(history, procedure));
-    body.push(Block::paragraph(sentences.join(" ")));
+    Block::paragraph(sentences.join(" "))
 }
 
 fn integrator(impact: &Impact) -> String {
@@ -220,24 +209,11 @@ fn tracking(history: &ImpactHistory, procedure: &ProcedureRecord) -> Option<Stri
     ))
 }
 
-/// The energy that the contact took, as it is summed over the steps: from the forces at their ends, or within them.
-pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
-    let planned = run.plan.procedures.get(index);
-    match planned.and_then(|planned| procedures::facts_of(&planned.kind).contact) {
-        Some(contact) if !contact.needs_tangent() => "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step",
-        _ => "contact, ∫F d(Xs − X) within each step",
-    }
-}
-
 /// The energy of the damping in the balance; omitted without damping.
 const DAMPING: &str = "damping, ∫CẊ dX";
 
 /// The balance of the striker's energy at the end of the run.
-pub(crate) fn energy_balance(
-    contact_work: &'static str,
-    history: &ImpactHistory,
-    body: &mut Vec<Block>,
-) {
+fn energy_balance(contact_work: &'static str, history: &ImpactHistory, body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else {
         return;
     };

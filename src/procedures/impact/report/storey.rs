@@ -1,15 +1,18 @@
 //! An impact on one storey of a frame, as a report states it: the contact, the modes, the response and the energy of each
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
-use super::{contact_log, contact_work, energy_balance};
-use crate::procedures::shake;
+use super::{at_the_end, peak_force};
+use crate::procedures::frame::report::{
+    element_table, entry, frame_of, integrated, mode_table, noise_note, storey_table,
+};
+use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::sections::results::{budget_table, tracking};
 use crate::report::{Run, number};
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{ImpactHistory, ProcedureRecord, StruckFrame};
-use psd_plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
+use psd_plan::{Frame, Impact, Mode, StoreyTarget};
 use psd_text::units::Dimension;
 
 /// The results that a reader looks for first.
@@ -23,58 +26,49 @@ pub(crate) const HEADLINE: &[&str] = &[
 ];
 
 /// The blocks below its results.
-pub(crate) fn report(
+pub(super) fn report(
     run: &Run<'_>,
-    index: usize,
+    impact: &Impact,
     procedure: &ProcedureRecord,
     history: &ImpactHistory,
     struck: &StruckFrame,
     body: &mut Vec<Block>,
 ) {
-    let Some(ProcedureKind::Impact(impact)) =
-        run.plan.procedures.get(index).map(|planned| &planned.kind)
-    else {
-        return;
-    };
     let Some(target) = impact.storey() else {
         return;
     };
     let Some(modes) = &struck.modes else { return };
-    let mut sentences = method(run, impact, target, history, struck);
-    sentences.extend(peak_force(impact, procedure));
-    sentences.extend(struck_mass(run, impact, target));
+    let frame = frame_of(run, impact.specimen);
+    let mut sentences = method(impact, target, history, struck, frame);
+    sentences.extend(peak_force(procedure, "this time step"));
+    sentences.extend(contact::note(&impact.contact).map(str::to_owned));
+    sentences.extend(struck_mass(run, impact, target, frame));
     sentences.extend(tracking::sentence(procedure));
     body.push(Block::paragraph(sentences.join(" ")));
-    body.push(shake::report::mode_table(modes, &struck.damping_ratios));
+    body.push(mode_table(modes, &struck.damping_ratios));
     if struck.floors.is_empty() {
         return;
     }
-    let frame = run
-        .plan
-        .specimens
-        .get(impact.specimen)
-        .and_then(|specimen| specimen.frame.as_ref());
-    body.push(shake::report::storey_table(
+    body.push(storey_table(
         procedure,
         &struck.floors,
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
-    body.extend(shake::report::element_table(procedure, &struck.floors));
-    body.extend(shake::report::noise_note(run, &struck.floors));
+    body.extend(element_table(procedure, &struck.floors));
+    body.extend(noise_note(run, &struck.floors));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure, frame));
-    energy_balance(contact_work(run, index), history, body);
-    contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
+    at_the_end(impact, procedure, history, body);
 }
 
 /// The struck storey, and the integration of the frame.
 fn method(
-    run: &Run<'_>,
     impact: &Impact,
     target: &StoreyTarget,
     history: &ImpactHistory,
     struck: &StruckFrame,
+    frame: Option<&Frame>,
 ) -> Vec<String> {
     let time = |value| number::text(value, Dimension::TIME);
     let step = time(history.time_step);
@@ -89,8 +83,8 @@ fn method(
             struck.struck + 1,
             impact.contact.title()
         ),
-        shake::report::integrated(
-            shake::report::frame_of(run, impact.specimen),
+        integrated(
+            frame,
             impact.stepping.integrator,
             &target.damping,
             &struck.damping_ratios,
@@ -117,39 +111,18 @@ fn method(
     sentences
 }
 
-/// The peak contact force with its impulse, and its limits under the rigid law.
-fn peak_force(impact: &Impact, procedure: &ProcedureRecord) -> Vec<String> {
-    let mut sentences = Vec::new();
-    if let (Some(peak), Some(impulse)) = (
-        procedure.number(schema::MAX_CONTACT_FORCE.name),
-        procedure.number(schema::IMPULSE.name),
-    ) {
-        sentences.push(format!(
-            "Peak contact force {} with an impulse of {} at this time step.",
-            number::text(peak, Dimension::FORCE),
-            number::text(impulse, Dimension::IMPULSE)
-        ));
-    }
-    if matches!(impact.contact, Contact::Rigid) {
-        sentences.push(
-            "Under the rigid law the contact force is inversely proportional to the time step. Only the impulse is a \
-             property of the impact."
-                .to_owned(),
-        );
-    }
-    sentences
-}
-
 /// The mass that an impact of no duration meets: that of the floor alone; under the rigid law, e = Ms/(Ms + 2M) with it.
-fn struck_mass(run: &Run<'_>, impact: &Impact, target: &StoreyTarget) -> Option<String> {
-    let frame = run.plan.specimens.get(impact.specimen)?.frame.as_ref()?;
+fn struck_mass(
+    run: &Run<'_>,
+    impact: &Impact,
+    target: &StoreyTarget,
+    frame: Option<&Frame>,
+) -> Option<String> {
     let striker = run.plan.strikers.get(impact.striker)?.mass;
-    let floor = frame.storeys.get(target.storey)?.mass;
+    let floor = frame?.storeys.get(target.storey)?.mass;
     let mass = number::stated(floor, Dimension::MASS);
-    let implied = matches!(impact.contact, Contact::Rigid).then(|| {
-        let restitution = number::text(striker / (striker + 2.0 * floor), Dimension::NUMBER);
-        format!("; the rigid law then implies a coefficient of restitution e = Ms/(Ms + 2M) = {restitution}")
-    });
+    let implied = contact::implied_restitution(&impact.contact, striker, floor);
+    let implied = implied.map(|implied| format!("; the rigid law then implies {implied}"));
     Some(format!(
         "The effective mass of an instantaneous impact is the mass of the floor alone, {mass}{}.",
         implied.unwrap_or_default()
@@ -167,7 +140,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         vec![
             format!("{word} {}", storey + 1).into(),
-            shake::report::entry(result, storey),
+            entry(result, storey),
             energy::fraction(*energy, input).into(),
         ]
     };

@@ -1,5 +1,6 @@
 //! The fields that impacts and shakes share. In: a block. Out: its stepping, or errors. It knows no striker and no ground.
 
+pub(crate) mod damping_check;
 pub(crate) mod frame_check;
 pub(crate) mod integrator_check;
 pub(crate) mod mode_check;

@@ -87,7 +87,7 @@ fn results(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut 
         .procedures
         .get(index)
         .map_or_else(Vec::new, |planned| {
-            procedures::facts_of(&planned.kind).unprinted
+            procedures::listed(&planned.kind).unprinted
         });
     let printed: Vec<&NamedResult> = procedure
         .results

@@ -58,10 +58,8 @@ pub(crate) fn measured(record: &Record) -> String {
                 steps.iter().map(|step| step.command).collect::<Vec<_>>()
             )
             .unwrap(),
-            History::Unload(steps)
-            | History::FrameUnload(steps)
-            | History::ElementUnload(steps) => {
-                for step in steps {
+            History::Unload(history) => {
+                for step in &history.steps {
                     writeln!(
                         text,
                         "{:?} {:?} {:?}",

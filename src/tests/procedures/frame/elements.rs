@@ -19,7 +19,9 @@ use psd_plan::procedures::shake::block::{
     FINAL_DRIFT, MAX_BASE_SHEAR, MAX_DRIFT, MAX_ELEMENT_FORCE,
 };
 use psd_plan::procedures::unload::block::{RESIDUAL_DRIFT, RESIDUAL_SHEAR};
-use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record, UnloadStep};
+use psd_plan::record::{
+    FloorMotion, Floors as _, History, Outcome, Record, UnloadHistory, UnloadStep, Unloaded,
+};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
     Behaviour, Contact, Element, Frame, Integrator, Link, Mode, Part, Plan, ProcedureKind, Scale,
@@ -767,7 +769,11 @@ fn rests(record: &Record) -> ([Vec<f64>; 2], &[UnloadStep]) {
     assert_eq!(record.outcome, Outcome::Completed);
     let rest = &record.procedures[1];
     let list = |name: &str| rest.result(name).unwrap().value.values().to_vec();
-    let History::ElementUnload(steps) = &rest.history else {
+    let History::Unload(UnloadHistory {
+        of: Unloaded::Elements,
+        steps,
+    }) = &rest.history
+    else {
         panic!("{:?}", rest.history)
     };
     (

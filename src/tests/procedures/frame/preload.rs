@@ -9,7 +9,7 @@ use psd_plan::formula::Formula::Constant;
 use psd_plan::procedures::unload::block::RESIDUAL_DISPLACEMENT;
 use psd_plan::record::{
     EventKind, Floors as _, History, Outcome, ProcedureRecord, Record, ShakeHistory, ShakeStep,
-    UnloadStep,
+    UnloadHistory, UnloadStep, Unloaded,
 };
 use psd_plan::{
     AxialAxis, AxisPlan, Behaviour, Frame, Integrator, Interval, Link, Move, Part, Plan, Preload,
@@ -218,7 +218,11 @@ fn unloading_takes_the_load_off_and_leaves_the_set_of_the_column() {
         (found - set).abs() < 1e-3 * leaning * set / stiffness,
         "{found}, not {set}"
     );
-    let History::FrameUnload(steps) = &procedure.history else {
+    let History::Unload(UnloadHistory {
+        of: Unloaded::Floors,
+        steps,
+    }) = &procedure.history
+    else {
         panic!()
     };
     let at = |step: &UnloadStep| (step.displacement[0], step.restoring_force[0]);

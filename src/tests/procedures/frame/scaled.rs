@@ -5,7 +5,7 @@ use super::hybrid::{
     COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
     shaken, struck, twice,
 };
-use crate::procedures::shake::tables;
+use crate::procedures::unload::tables;
 use crate::tests::testing::run_unwatched;
 use polars::prelude::Column;
 use psd_physics::structure::substructures::Assemblies;
@@ -334,7 +334,7 @@ fn a_table_has_the_numbers_of_the_rig_beside_those_of_the_prototype() {
         let frame = plan.frame_on_the_rig().unwrap();
         let scaled = Assemblies::of(frame).filter(Assemblies::is_scaled);
         match &record.procedures[1].history {
-            History::FrameUnload(steps) => tables::unloading(steps, scaled.as_ref()),
+            History::Unload(history) => tables::unloading(&history.steps, scaled.as_ref()),
             other => panic!("{other:?}"),
         }
     };

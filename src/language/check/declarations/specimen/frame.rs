@@ -3,7 +3,7 @@
 
 use std::rc::Rc;
 
-use crate::check::checker::{Checker, Context};
+use crate::check::checker::{Checker, Context, Traced};
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
@@ -58,19 +58,24 @@ pub fn is_frame(checker: &Checker, block: usize) -> bool {
 
 /// The frame; an error in it is reported once, however often it is requested.
 pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
-    if let Some(known) = checker.frames.get(&block) {
-        return known.clone();
+    if let Some(known) = checker.frames.get(&block).cloned() {
+        return checker.read_again(&known);
     }
     // There is no frame until it is known: a storey that reads the mass of its own frame gets no value.
-    checker.frames.insert(block, None);
-    let frame = report_once(checker, block).and_then(|()| {
-        match checker.field(block, fields::STOREYS.name) {
-            Some(_) => storeys(checker, block).map(Frame::of_storeys),
-            None => matrices(checker, block).and_then(|frame| with_elements(checker, block, frame)),
-        }
+    checker.frames.insert(block, Traced::unknown());
+    let traced = checker.traced(|checker| {
+        report_once(checker, block)?;
+        let frame = match checker.field(block, fields::STOREYS.name) {
+            Some(_) => Frame::of_storeys(storeys(checker, block)?),
+            None => {
+                let frame = matrices(checker, block)?;
+                with_elements(checker, block, frame)?
+            }
+        };
+        Some(Rc::new(frame))
     });
-    let frame = frame.map(Rc::new);
-    checker.frames.insert(block, frame.clone());
+    let frame = traced.value.clone();
+    checker.frames.insert(block, traced);
     frame
 }
 

@@ -1,15 +1,15 @@
-//! The figures of a ground-motion test and of an unloaded frame, with their captions, and the curve of a test on a chart of several. In:
-//! a history. Out: [`Chart`]s in SI.
-
-pub(crate) mod charts;
+//! The figures of a ground-motion test, with their captions, and the curve of a test on a chart of several. In: a history. Out: [`Chart`]s
+//! in SI.
 
 use crate::procedures::common::limit_lines::limits_on;
+use crate::procedures::frame::charts::{one, over_time};
+use crate::procedures::frame::{captions, charts};
+use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::report::Run;
-use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
+use crate::report::figures::chart::{Chart, Quantity, SOLID, SharedCurve, Style, palette};
 use crate::report::figures::points::Points;
-use crate::report::wording::specimen::{measured, weights};
 use psd_plan::procedures::shake::block as schema;
-use psd_plan::record::{Floors, ShakeHistory, ShakeStep, UnloadStep};
+use psd_plan::record::{Floors, ShakeHistory, ShakeStep};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Figure, FigureKind};
 use psd_text::units::Dimension;
@@ -25,9 +25,6 @@ pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Energy,
     FigureKind::Tracking,
 ];
-
-/// Figures of a frame that is unloaded.
-pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
 
 /// Figures that several ground-motion tests share: one curve for each.
 pub(crate) const SHARED: &[FigureKind] = &[
@@ -52,142 +49,42 @@ pub(crate) fn chart(
     Some(match figure.kind {
         FigureKind::Modes => (
             charts::modes(history.modes.as_ref()?),
-            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
+            captions::modes(name),
         ),
         FigureKind::Ground => (
-            charts::ground(history),
+            ground(history),
             format!("{name}: applied ground acceleration against simulated time."),
         ),
         FigureKind::Displacement => (
             charts::displacement(&history.steps),
             format!(
                 "{name}: displacement of each {} relative to the ground against simulated time{}.",
-                charts::entries_of(has_elements(run)),
+                charts::entries_of(captions::has_elements(run)),
                 charts::chosen_floors(&history.steps)
             ),
         ),
         FigureKind::Drift => (
             charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
-            drifts(run, name, chosen),
+            captions::drifts(run, name, chosen),
         ),
-        FigureKind::Hysteresis => (charts::hysteresis(&history.steps), loops(run, name, chosen)),
+        FigureKind::Hysteresis => (
+            charts::hysteresis(&history.steps),
+            captions::loops(run, name, chosen),
+        ),
         FigureKind::BaseShear => (
             charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
-            format!(
-                "{name}: base shear, the sum of the {}, against simulated time.",
-                restoring_forces(run)
-            ),
+            captions::base_shear(run, name),
         ),
         FigureKind::Energy => (
-            charts::energy(history),
+            energy(history),
             format!("{name}: input energy of the ground motion and its parts."),
         ),
         FigureKind::Tracking => (
             charts::tracking(&history.steps),
-            followed(run, name, chosen),
+            captions::followed(run, name, chosen),
         ),
         _ => return None,
     })
-}
-
-/// The unloading path of a frame to zero restoring force, and its caption.
-pub(crate) fn unloading_chart(
-    run: &Run<'_>,
-    name: &str,
-    steps: &[UnloadStep],
-    kind: FigureKind,
-) -> Option<(Chart, String)> {
-    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
-        (
-            charts::hysteresis(steps),
-            format!(
-                "{name}: {} against drift, from the start of the unloading to the unloaded position of each storey.",
-                storey_shear(run)
-            ),
-        )
-    })
-}
-
-/// The same of the elements of a frame of matrices.
-pub(crate) fn unloaded_elements(
-    run: &Run<'_>,
-    name: &str,
-    steps: &[UnloadStep],
-    kind: FigureKind,
-) -> Option<(Chart, String)> {
-    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
-        let force = measured("force of each element", run.plan.frame_on_the_rig());
-        let read = |step: &UnloadStep| {
-            let deformation = step.displacement.iter().copied();
-            deformation
-                .zip(step.restoring_force.iter().copied())
-                .collect()
-        };
-        (
-            charts::loops(steps, true, read),
-            format!(
-                "{name}: {force} against its deformation, from the start of the unloading to zero force."
-            ),
-        )
-    })
-}
-
-/// The caption of the drifts.
-pub(crate) fn drifts(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let drift = if has_elements(run) {
-        "deformation of each element"
-    } else {
-        "drift of each storey"
-    };
-    format!("{name}: {drift} against simulated time{chosen}.")
-}
-
-/// Whether the rig tests a frame of matrices with elements.
-fn has_elements(run: &Run<'_>) -> bool {
-    let frame = run.plan.frame_on_the_rig();
-    frame.is_some_and(|frame| !frame.elements.is_empty())
-}
-
-/// The caption of the loops.
-pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    if has_elements(run) {
-        let force = measured("force of each element", run.plan.frame_on_the_rig());
-        return format!(
-            "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element{chosen}."
-        );
-    }
-    format!(
-        "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
-        storey_shear(run)
-    )
-}
-
-/// The storey shear of a caption, with what of it was measured.
-pub(crate) fn storey_shear(run: &Run<'_>) -> String {
-    measured("storey shear", run.plan.frame_on_the_rig())
-}
-
-/// The same of the restoring forces.
-pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
-    let frame = run.plan.frame_on_the_rig();
-    let sum = measured("restoring forces", frame);
-    match frame.and_then(weights) {
-        None => sum,
-        Some(_) => format!("{sum} net of P-Δ"),
-    }
-}
-
-/// The caption of the tracking of a frame.
-pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let of = if has_elements(run) {
-        "element"
-    } else {
-        "floor"
-    };
-    format!(
-        "{name}: tracking error of each {of}'s actuator{chosen}, and the tracking indicator of all of them over the \
-         largest command; a falling indicator shows that lag adds energy to the test."
-    )
 }
 
 /// The curve of this history on a chart of several; None for a figure that is not shared.
@@ -273,4 +170,36 @@ fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option
             .collect(),
         _ => return None,
     })
+}
+
+fn ground(history: &ShakeHistory) -> Chart {
+    let curve = one(
+        &history.steps,
+        "as applied",
+        |step| step.ground_acceleration,
+        Style::line(palette::BLUE, 1.4, SOLID),
+    );
+    let acceleration = Quantity::of("Acceleration of the ground", Dimension::ACCELERATION);
+    over_time(acceleration, vec![curve])
+}
+
+/// The input, and the energies that it became.
+fn energy(history: &ShakeHistory) -> Chart {
+    let curves = [
+        EnergyCurve::new(
+            "input",
+            |step: &ShakeStep| step.energies.input,
+            Style::line(palette::BLACK, 1.6, SOLID),
+        ),
+        EnergyCurve::restoring(|step: &ShakeStep| step.energies.restoring),
+        EnergyCurve::damping(|step: &ShakeStep| step.energies.damping),
+        EnergyCurve::new(
+            "kinetic",
+            |step: &ShakeStep| step.energies.kinetic,
+            Style::line(palette::SKY, 1.4, SOLID),
+        ),
+        EnergyCurve::weights(|step: &ShakeStep| step.energies.gravity),
+    ];
+    let curves = nonzero_curves(&history.steps, |step| step.floors.time, curves);
+    over_time(Quantity::of("Energy", Dimension::ENERGY), curves)
 }

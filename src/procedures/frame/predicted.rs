@@ -1,15 +1,22 @@
-//! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
-//! test, or of an impact on a storey. Out: rows of text.
+//! Rows of `psd check --explain` for a frame: its modes, and the peaks of the dry run. In: modes, and the steps of a frame. Out: rows of
+//! text.
 
-use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::{Damping, widen};
-use psd_plan::record::{Floors, Modes, ShakeHistory};
-use psd_plan::{Frame, Integrator, Part};
+use crate::procedures::common::predicted::{Predicted, row};
+use psd_physics::structure::widen;
+use psd_plan::record::{Floors, Modes};
 use psd_text::units::Dimension;
 use psd_text::units::display::{digits, join, readable, significant, unit};
 
+/// The modes of the frame that a procedure tests, and their shapes.
+pub(crate) fn of_modes(name: &str, of: Option<&Modes>, ratios: &[f64]) -> [Predicted; 2] {
+    [
+        Predicted::new(format!("{name}, modes"), modes(of, ratios)),
+        Predicted::new(format!("{name}, shapes"), shapes(of)),
+    ]
+}
+
 /// One row per mode: period, damping, effective modal mass, and its shape from the lowest floor up.
-pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
+fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
     let Some(modes) = modes else {
         return Vec::new();
     };
@@ -41,7 +48,7 @@ pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
 
 /// The shapes of the first modes, drawn: one column per mode, the highest floor on top, the ground below. The largest entry of a shape
 /// reaches an end of its column.
-pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
+fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
     const SHOWN: usize = 4;
     /// Letters on either side of the middle.
     const HALF: usize = 8;
@@ -86,87 +93,8 @@ pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
     rows
 }
 
-/// The computed storey that dictates the critical step, and the limit of explicit Newmark.
-fn dictated(history: &ShakeHistory, frame: &Frame, integrator: Integrator) -> Option<String> {
-    let highest = history.modes.as_ref()?.shapes.last()?;
-    let (storey, fraction) = frame.most_strained(highest)?;
-    if frame.storeys[storey].part != Part::Computed {
-        return None;
-    }
-    let storey = storey + 1;
-    let fraction = significant(100.0 * fraction, 2);
-    let dictated = format!(
-        "; the computed storey {storey} dictates it, with {fraction} % of the strain energy of the highest mode"
-    );
-    if integrator != Integrator::Explicit {
-        return Some(dictated);
-    }
-    let limit = FrameProperties::of(frame, &Damping::None)
-        .ok()?
-        .longest_stable_step(integrator, Some(frame));
-    let limit = readable(limit, Dimension::TIME);
-    Some(format!(
-        "{dictated}; `explicit` is stable up to {limit}, `alpha_os` at every step"
-    ))
-}
-
-/// The time step and the predicted peaks.
-pub fn steps(
-    history: &ShakeHistory,
-    frame: Option<&Frame>,
-    integrator: Integrator,
-) -> Vec<Vec<String>> {
-    if history.steps.is_empty() {
-        return Vec::new();
-    }
-    let ratio = history.time_step / history.critical_time_step;
-    let judged = if ratio > 1.0 {
-        "ABOVE critical"
-    } else {
-        "of it"
-    };
-    let ends = history.steps.last().map_or(0.0, |step| step.floors.time);
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let mut rows = vec![
-        row(
-            "critical time step",
-            readable(history.critical_time_step, Dimension::TIME)
-                + &frame
-                    .and_then(|frame| dictated(history, frame, integrator))
-                    .unwrap_or_default(),
-        ),
-        row(
-            "chosen time step",
-            format!(
-                "{}, {} {judged}",
-                readable(history.time_step, Dimension::TIME),
-                significant(ratio, 3)
-            ),
-        ),
-        row(
-            "simulated time",
-            format!(
-                "{} in {} steps",
-                readable(ends, Dimension::TIME),
-                history.steps.len() - 1
-            ),
-        ),
-    ];
-    rows.extend(floor_peaks(&history.steps));
-    rows.push(row(
-        "largest ground acceleration",
-        peaks(
-            &history.steps,
-            |step| vec![step.ground_acceleration],
-            Dimension::ACCELERATION,
-        ),
-    ));
-    rows
-}
-
 /// The predicted peaks of all floors and storeys, or of all degrees of freedom and elements.
-pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
+pub(crate) fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
     if steps.last().is_some_and(F::has_elements) {
         return vec![
             row(
@@ -200,7 +128,7 @@ pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
 }
 
 /// Peak absolute values, all in one unit.
-fn peaks<S>(steps: &[S], read: impl Fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
+pub(crate) fn peaks<S>(steps: &[S], read: impl Fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
     let mut largest: Vec<f64> = Vec::new();
     for step in steps {
         let values = read(step);

@@ -1,13 +1,12 @@
-//! Charts of a frame on moving ground, and of floors and storeys in general. In: the steps, the modes. Out: [`Chart`]s in SI. Colour and
-//! dash distinguish floors and storeys, the lowest first.
+//! Charts of floors, storeys and elements. In: the steps of a frame, its modes. Out: [`Chart`]s in SI. Colour and dash distinguish floors
+//! and storeys, the lowest first.
 
-use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::report::figures::chart::{
     Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, Reference, SOLID, Series,
     Style, palette,
 };
 use crate::report::figures::points::{PointCollector, Points};
-use psd_plan::record::{Floors, Modes, ShakeHistory, ShakeStep};
+use psd_plan::record::{Floors, Modes};
 use psd_text::units::Dimension;
 
 /// More curves than this cannot be distinguished in one picture.
@@ -106,17 +105,6 @@ pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart 
     }
 }
 
-pub(crate) fn ground(history: &ShakeHistory) -> Chart {
-    let curve = one(
-        &history.steps,
-        "as applied",
-        |step| step.ground_acceleration,
-        Style::line(palette::BLUE, 1.4, SOLID),
-    );
-    let acceleration = Quantity::of("Acceleration of the ground", Dimension::ACCELERATION);
-    over_time(acceleration, vec![curve])
-}
-
 /// The tracking error of each floor, and the tracking indicator of all as a length: divided by the largest command.
 pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     let missed = |step: &S| {
@@ -170,27 +158,6 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
         });
     }
     chart
-}
-
-/// The input, and the energies that it became.
-pub(crate) fn energy(history: &ShakeHistory) -> Chart {
-    let curves = [
-        EnergyCurve::new(
-            "input",
-            |step: &ShakeStep| step.energies.input,
-            Style::line(palette::BLACK, 1.6, SOLID),
-        ),
-        EnergyCurve::restoring(|step: &ShakeStep| step.energies.restoring),
-        EnergyCurve::damping(|step: &ShakeStep| step.energies.damping),
-        EnergyCurve::new(
-            "kinetic",
-            |step: &ShakeStep| step.energies.kinetic,
-            Style::line(palette::SKY, 1.4, SOLID),
-        ),
-        EnergyCurve::weights(|step: &ShakeStep| step.energies.gravity),
-    ];
-    let curves = nonzero_curves(&history.steps, |step| step.floors.time, curves);
-    over_time(Quantity::of("Energy", Dimension::ENERGY), curves)
 }
 
 /// Shapes of the first modes, floor by floor from the ground up; the largest entry of each is 1.
@@ -317,11 +284,16 @@ fn retraced(curve: usize) -> Style {
     )
 }
 
-fn over_time(y: Quantity, series: Vec<Series>) -> Chart {
+pub(crate) fn over_time(y: Quantity, series: Vec<Series>) -> Chart {
     Chart::of(Quantity::time(), y, series)
 }
 
-fn one<S: Floors>(steps: &[S], label: &str, read: fn(&S) -> f64, style: Style) -> Series {
+pub(crate) fn one<S: Floors>(
+    steps: &[S],
+    label: &str,
+    read: fn(&S) -> f64,
+    style: Style,
+) -> Series {
     Series {
         label: label.to_owned(),
         points: steps.iter().map(|step| (step.time(), read(step))).collect(),
