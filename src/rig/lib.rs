@@ -29,7 +29,7 @@ use psd_plan::{Interval, Limits, Plan};
 use psd_text::units::{Dimension, display};
 
 pub use connect::{Connected, connect};
-pub use guard::{Guard, Traversed, UnfinishedStep, fault_of_ideal_step};
+pub use guard::{Guard, Traversed, fault_of_ideal_step};
 pub use psd_plan::DeclaredNoise;
 pub use psd_plan::record::{Held, Identity};
 pub use psd_plan::{named_axis, of_axis, who};
@@ -436,6 +436,14 @@ pub trait Rig {
     fn line_statistics(&self) -> LineStatistics {
         LineStatistics::default()
     }
+}
+
+/// A step that ended early.
+#[derive(Debug)]
+pub struct UnfinishedStep {
+    /// Whether the targets were reached.
+    pub is_reached: bool,
+    pub fault: RigFault,
 }
 
 /// A rig that is [`Rig::at_once`].

@@ -4,7 +4,11 @@ use std::fmt::Display;
 
 /// `1 step`, `3 steps`
 #[must_use]
-pub fn counted<N: Display + PartialEq + From<u8>>(count: N, one: &str, several: &str) -> String {
+pub fn counted<N: Copy + Display + PartialEq + From<u8>>(
+    count: N,
+    one: &str,
+    several: &str,
+) -> String {
     let word = if count == N::from(1) { one } else { several };
     format!("{count} {word}")
 }

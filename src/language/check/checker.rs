@@ -86,6 +86,10 @@ pub struct Context {
     pub critical: bool,
 }
 
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is true of another time of the check"
+)]
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,

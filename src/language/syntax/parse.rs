@@ -480,6 +480,10 @@ impl Pieces<'_> {
         fields: &[Statement],
         close: Option<usize>,
     ) -> Option<Item> {
+        #[expect(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method has one lifetime, the closure any"
+        )]
         let sound = (head.end > head.start)
             .then(|| self.alone(head, Rule::head_alone, |lowering, pair| lowering.head(pair)));
         if sound.is_none() {

@@ -96,7 +96,7 @@ pub(crate) fn written<T>(columns: &[TableColumn<T>], rows: &[T]) -> Vec<Written>
             cells.add(block);
         }
     }
-    all.into_iter().map(|cells| cells.written()).collect()
+    all.into_iter().map(Cells::written).collect()
 }
 
 /// The numeric columns of a table.

@@ -12,7 +12,9 @@ pub mod smooth_paths;
 pub mod speed;
 
 use super::safety::failpoint::{Guarding, on};
-use super::{EachReading, LimitedQuantity, OWN_SPEED, Reading, Rig, RigFault, named_axis};
+use super::{
+    EachReading, LimitedQuantity, OWN_SPEED, Reading, Rig, RigFault, UnfinishedStep, named_axis,
+};
 use axial::AxialAxes;
 use holds::Holds;
 use psd_plan::{AxialAxis, Interval, Limits};
@@ -50,14 +52,6 @@ pub struct Guard<'rig> {
 pub struct Traversed {
     pub readings: Vec<Reading>,
     pub fault: Option<RigFault>,
-}
-
-/// A step that ended early.
-#[derive(Debug)]
-pub struct UnfinishedStep {
-    /// Whether the targets were reached.
-    pub is_reached: bool,
-    pub fault: RigFault,
 }
 
 impl<'rig> Guard<'rig> {

@@ -65,12 +65,11 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     checker.frames.insert(block, Traced::unknown());
     let traced = checker.traced(|checker| {
         report_once(checker, block)?;
-        let frame = match checker.field(block, fields::STOREYS.name) {
-            Some(_) => Frame::of_storeys(storeys(checker, block)?),
-            None => {
-                let frame = matrices(checker, block)?;
-                with_elements(checker, block, frame)?
-            }
+        let frame = if checker.field(block, fields::STOREYS.name).is_some() {
+            Frame::of_storeys(storeys(checker, block)?)
+        } else {
+            let frame = matrices(checker, block)?;
+            with_elements(checker, block, frame)?
         };
         Some(Rc::new(frame))
     });
