@@ -96,11 +96,19 @@ impl UncertaintyStatus {
 
 /// The results that formulas read.
 pub trait Results: Sync {
+    /// Other results, of which these give another view: what a view does not state is theirs.
+    fn base(&self) -> Option<&dyn Results> {
+        None
+    }
+
     /// The result, or None if its procedure has not run to it.
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
 
     /// The uncertainty contributions of the result; by default its whole uncertainty is one separate contribution.
     fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
+        if let Some(base) = self.base() {
+            return base.contributions(reference);
+        }
         let ResultReference {
             procedure, name, ..
         } = reference;
@@ -120,18 +128,25 @@ pub trait Results: Sync {
     }
 
     /// Degrees of freedom of the uncertainty of a source; infinite if it was not estimated from readings.
-    fn degrees(&self, _: Source) -> f64 {
-        f64::INFINITY
+    fn degrees(&self, source: Source) -> f64 {
+        self.base()
+            .map_or(f64::INFINITY, |base| base.degrees(source))
     }
 
     /// The perturbation of a source, in its standard uncertainties.
-    fn moved(&self, _: Source) -> f64 {
-        0.0
+    fn moved(&self, source: Source) -> f64 {
+        self.base().map_or(0.0, |base| base.moved(source))
     }
 
     /// What is known of the uncertainty of the result, or of one entry of a list; by default it is exact.
-    fn uncertainty_status(&self, _: ResultReference, _: Option<usize>) -> UncertaintyStatus {
-        UncertaintyStatus::Exact
+    fn uncertainty_status(
+        &self,
+        reference: ResultReference,
+        entry: Option<usize>,
+    ) -> UncertaintyStatus {
+        self.base().map_or(UncertaintyStatus::Exact, |base| {
+            base.uncertainty_status(reference, entry)
+        })
     }
 }
 
@@ -151,6 +166,10 @@ pub struct Moved<'a> {
 }
 
 impl Results for Moved<'_> {
+    fn base(&self) -> Option<&dyn Results> {
+        Some(self.results)
+    }
+
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let mut found = self.results.result(reference)?;
         if reference.part != ResultPart::Value {
@@ -174,22 +193,6 @@ impl Results for Moved<'_> {
     fn moved(&self, source: Source) -> f64 {
         let mine = self.shifts.iter().filter(|(shifted, _)| *shifted == source);
         mine.fold(self.results.moved(source), |moved, (_, by)| moved + by)
-    }
-
-    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
-        self.results.contributions(reference)
-    }
-
-    fn degrees(&self, source: Source) -> f64 {
-        self.results.degrees(source)
-    }
-
-    fn uncertainty_status(
-        &self,
-        reference: ResultReference,
-        entry: Option<usize>,
-    ) -> UncertaintyStatus {
-        self.results.uncertainty_status(reference, entry)
     }
 }
 
@@ -226,6 +229,10 @@ impl<'a> ReadOnce<'a> {
 }
 
 impl Results for ReadOnce<'_> {
+    fn base(&self) -> Option<&dyn Results> {
+        Some(self.results)
+    }
+
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         match self.found(reference) {
             Some(found) => found.value.clone(),
@@ -238,22 +245,6 @@ impl Results for ReadOnce<'_> {
             Some(found) => Cow::Borrowed(&found.contributions),
             None => self.results.contributions(reference),
         }
-    }
-
-    fn moved(&self, source: Source) -> f64 {
-        self.results.moved(source)
-    }
-
-    fn degrees(&self, source: Source) -> f64 {
-        self.results.degrees(source)
-    }
-
-    fn uncertainty_status(
-        &self,
-        reference: ResultReference,
-        entry: Option<usize>,
-    ) -> UncertaintyStatus {
-        self.results.uncertainty_status(reference, entry)
     }
 }
 

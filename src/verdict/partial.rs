@@ -2,11 +2,8 @@
 //! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, each with
 //! what is known of its uncertainty.
 
-use std::borrow::Cow;
-
 use psd_plan::Plan;
 use psd_plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus};
-use psd_plan::uncertainty::{Contribution, Source};
 
 /// Results of a run on the rig of a plan.
 pub struct Declared<'a> {
@@ -28,20 +25,12 @@ impl<'a> Declared<'a> {
 }
 
 impl Results for Declared<'_> {
+    fn base(&self) -> Option<&dyn Results> {
+        Some(self.results)
+    }
+
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         self.results.result(reference)
-    }
-
-    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
-        self.results.contributions(reference)
-    }
-
-    fn degrees(&self, source: Source) -> f64 {
-        self.results.degrees(source)
-    }
-
-    fn moved(&self, source: Source) -> f64 {
-        self.results.moved(source)
     }
 
     fn uncertainty_status(

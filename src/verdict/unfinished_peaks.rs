@@ -2,20 +2,15 @@
 //! series, and a condition that reads their results. Out: the reason why the condition is inconclusive, if further growth would change
 //! its verdict. It assesses no condition alone, and does not read the plan.
 
-use std::borrow::Cow;
-
 use super::ConditionOutcome;
 use super::assess_condition;
-use psd_plan::formula::{
-    ProcedureId, ResultPart, ResultReference, ResultValue, Results, UncertaintyStatus,
-};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference, ResultValue, Results};
 use psd_plan::procedures::{escalate, impact, shake};
 use psd_plan::record::{
     EscalateHistory, FloorMotion, Floors, History, ImpactHistory, Integrated, SeriesImpact,
     ShakeHistory,
 };
 use psd_plan::schema::{BlockKind, Peak, ResultKind};
-use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Condition, DecisionRule};
 
 /// The part of one result that may have grown further, and the reason.
@@ -138,6 +133,10 @@ struct Grown<'a> {
 const LEAST: f64 = 1e-9;
 
 impl Results for Grown<'_> {
+    fn base(&self) -> Option<&dyn Results> {
+        Some(self.results)
+    }
+
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let mut found = self.results.result(reference)?;
         let growing = self
@@ -157,26 +156,6 @@ impl Results for Grown<'_> {
             }
         }
         Some(found)
-    }
-
-    fn contributions(&self, reference: ResultReference) -> Cow<'_, [Contribution]> {
-        self.results.contributions(reference)
-    }
-
-    fn degrees(&self, source: Source) -> f64 {
-        self.results.degrees(source)
-    }
-
-    fn moved(&self, source: Source) -> f64 {
-        self.results.moved(source)
-    }
-
-    fn uncertainty_status(
-        &self,
-        reference: ResultReference,
-        entry: Option<usize>,
-    ) -> UncertaintyStatus {
-        self.results.uncertainty_status(reference, entry)
     }
 }
 

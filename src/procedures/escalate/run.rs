@@ -20,7 +20,7 @@ use psd_physics::structure::Unloading;
 use psd_plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
 use psd_plan::procedures::escalate::block as schema;
 use psd_plan::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
-use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::uncertainty::Contribution;
 use psd_plan::{Between, Escalate, Plan};
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
@@ -256,6 +256,10 @@ struct OfImpact<'a> {
 }
 
 impl Results for OfImpact<'_> {
+    fn base(&self) -> Option<&dyn Results> {
+        Some(self.before)
+    }
+
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         if reference.procedure == self.own {
             return NamedResult::of(&self.results, reference.name)
@@ -270,10 +274,6 @@ impl Results for OfImpact<'_> {
             return found.map_or_else(Cow::default, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
-    }
-
-    fn degrees(&self, source: Source) -> f64 {
-        self.before.degrees(source)
     }
 
     fn uncertainty_status(
