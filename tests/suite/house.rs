@@ -54,7 +54,6 @@ const KNOWS: &[(&[&str], &[&str])] = &[
             "typst",
             "typst_layout",
             "typst_pdf",
-            "typst_assets",
         ],
         &["report"],
     ),

@@ -18,6 +18,13 @@ pub(crate) const PAGE_OVER_FIGURE: f64 = 1493.0 / 2048.0 / 0.647;
 /// The two fonts of the figures; the report uses them for letters that its text font lacks.
 pub(crate) static SANS: &[u8] = include_bytes!("DejaVuSans.ttf");
 pub(crate) static SANS_BOLD: &[u8] = include_bytes!("DejaVuSans-Bold.ttf");
+/// The fonts of the template.
+static OF_THE_PAGE: [&[u8]; 4] = [
+    include_bytes!("LibertinusSerif-Regular.otf"),
+    include_bytes!("LibertinusSerif-Bold.otf"),
+    include_bytes!("LibertinusSerif-Italic.otf"),
+    include_bytes!("DejaVuSansMono.ttf"),
+];
 
 pub(super) struct Fonts {
     fonts: Vec<Font>,
@@ -26,15 +33,9 @@ pub(super) struct Fonts {
 
 /// Parsed when the first PDF is made.
 pub(super) static FONTS: LazyLock<Fonts> = LazyLock::new(|| {
-    /// Index of the fonts of the template among those of typst: Libertinus Serif in three cuts, DejaVu Sans Mono.
-    const NAMED: [usize; 4] = [0, 1, 2, 16];
-    let theirs = typst_assets::fonts()
-        .enumerate()
-        .filter(|(index, _)| NAMED.contains(index))
-        .map(|(_, font)| font);
     let fonts: Vec<Font> = [SANS, SANS_BOLD]
         .into_iter()
-        .chain(theirs)
+        .chain(OF_THE_PAGE)
         .flat_map(|font| Font::iter(Bytes::new(font)))
         .collect();
     let book = LazyHash::new(FontBook::from_fonts(&fonts));
