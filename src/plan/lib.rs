@@ -127,6 +127,12 @@ impl Plan {
         self.specimen_on_the_rig()?.frame.as_ref()
     }
 
+    /// Whether the rig tests a frame of matrices with elements.
+    #[must_use]
+    pub fn tests_elements(&self) -> bool {
+        self.frame_on_the_rig().is_some_and(Frame::has_elements)
+    }
+
     /// The specimen on the rig, if only a test on a real rig can measure its restoring force.
     #[must_use]
     pub fn unknown_specimen(&self) -> Option<&Specimen> {

@@ -28,7 +28,7 @@ pub struct Names {
 impl Shown {
     pub fn of(plan: &Plan) -> Self {
         let frame = plan.frame_on_the_rig();
-        let is_element = frame.is_some_and(|frame| !frame.elements.is_empty());
+        let is_element = plan.tests_elements();
         let assemblies = frame.and_then(Assemblies::of);
         let last_axis = assemblies.filter(|assemblies| !assemblies.is_whole_frame());
         let last_axis = last_axis.and_then(|assemblies| {

@@ -54,7 +54,7 @@ pub struct Assemblies {
 /// From the ground up, or in the order of the elements; empty for a matrix on the rig.
 fn supports(frame: &Frame) -> Vec<Support> {
     let mut stood = false;
-    let is_chain = frame.elements.is_empty();
+    let is_chain = !frame.has_elements();
     let support = |member: Member<'_>| match member.part {
         Part::Computed => {
             stood = false;

@@ -35,7 +35,7 @@ pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> 
 
 /// Whether the stiffness is that of storeys or elements, each of which shows its own as it moves.
 pub(crate) fn has_tangents(frame: &Frame) -> bool {
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         return true;
     }
     SymmetricBand::from_dense(&frame.stiffness)

@@ -223,7 +223,7 @@ impl<'run> FrameUncertainty<'run> {
         let Some(frame) = self.frame else {
             return Vec::new();
         };
-        let has_elements = !frame.elements.is_empty();
+        let has_elements = frame.has_elements();
         let is_computed = |member: Member<'_>| member.part == Part::Computed;
         if !has_elements && !frame.members().any(is_computed) {
             return Vec::new();

@@ -45,7 +45,7 @@ pub(crate) fn perform(
     let rest = outcome.as_ref().ok();
     let (of, results) = match plan.stiffness {
         Some(_) => (Unloaded::OneAxis, of_farthest(rest)),
-        None if has_elements(whole) => (Unloaded::Elements, element_results(rest)),
+        None if whole.tests_elements() => (Unloaded::Elements, element_results(rest)),
         None => (Unloaded::Floors, frame_results(rest)),
     };
     if of == Unloaded::OneAxis && !steps.is_empty() {
@@ -59,14 +59,9 @@ pub(crate) fn perform(
     }
 }
 
-fn has_elements(whole: &Plan) -> bool {
-    let frame = whole.frame_on_the_rig();
-    frame.is_some_and(|frame| !frame.elements.is_empty())
-}
-
 /// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         let elements = frame.elements.iter();
         let tested = on_the_rig(frame).map(|(element, _)| element.stiffness);
         return Ok(Unloading::of_elements(

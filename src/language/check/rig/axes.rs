@@ -373,7 +373,7 @@ struct AxisOfAnotherFrame {
 
 /// The storeys or elements that axes name are the tested ones, in their order.
 fn check_members(checker: &mut Checker, frame: &Frame, axes: &[AxisPlan], block: usize) {
-    let has_elements = !frame.elements.is_empty();
+    let has_elements = frame.has_elements();
     let word = frame.word_for_a_member();
     let parts: Vec<Part> = if frame.is_matrix_on_the_rig() {
         vec![Part::TESTED; frame.degrees_of_freedom()]

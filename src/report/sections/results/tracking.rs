@@ -75,7 +75,7 @@ pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Optio
     } else {
         peak_column
     };
-    let floor = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+    let floor = if frame.is_some_and(Frame::has_elements) {
         wording::OF_ELEMENT
     } else {
         floor
