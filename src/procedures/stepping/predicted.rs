@@ -198,7 +198,7 @@ fn uncertain(plan: &Plan, mode: Mode) -> f64 {
         Link::Real(link) => link.readings.resolution,
     };
     let lags = plan.rig.link.as_virtual().is_none_or(|link| link.lag > 0.0);
-    let settles = lags && mode == Mode::StepAndPause;
+    let settles = lags && mode == Mode::RampAndHold;
     let on_the_rig = DeclaredNoise {
         force: 0.0,
         resolution: 0.5 * resolution + if settles { plan.rig.settle.band } else { 0.0 },

@@ -108,7 +108,7 @@ pub(crate) fn run<S: Stepped>(
             time_scale,
             steps.time_step,
         )),
-        Mode::StepAndPause => None,
+        Mode::RampAndHold => None,
     };
     let keeps_steps = session.keep != Keep::Results;
     stepped.sum_up();
