@@ -1,7 +1,7 @@
 //! The types of the schema's entries, and small look-ups in them.
 
 use crate::ProcedureBlock;
-use psd_text::units::Dimension;
+use psd_text::units::{Dimension, display};
 
 /// The kind of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -205,6 +205,26 @@ impl Range {
         } else {
             value >= self.low
         }) && value <= self.high
+    }
+
+    /// Which values are allowed, in usual units: `greater than 0`, `between 1 mm and 1 m`.
+    #[must_use]
+    pub fn in_words(self, dimension: Dimension) -> String {
+        let show = |value: f64| {
+            if dimension == Dimension::NUMBER || value == 0.0 {
+                ((value * 1e4).round() / 1e4).to_string()
+            } else {
+                display::plain(value, dimension, 4)
+            }
+        };
+        let (low, high) = (show(self.low), show(self.high));
+        match (self.low.is_finite(), self.above, self.high.is_finite()) {
+            (true, true, false) => format!("greater than {low}"),
+            (true, false, false) => format!("at least {low}"),
+            (true, true, true) => format!("greater than {low} and at most {high}"),
+            (true, false, true) => format!("between {low} and {high}"),
+            _ => format!("at most {high}"),
+        }
     }
 }
 

@@ -148,18 +148,6 @@ impl Cycling {
             .map(|level| level.amplitude.clone())
             .collect::<Vec<_>>();
         let amplitudes = inputs.list(&schema::GIVEN_AMPLITUDES, &amplitudes)?;
-        if let Some(value) = amplitudes
-            .iter()
-            .copied()
-            .find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite()))
-        {
-            return Err(Stop::bad_input(
-                schema::GIVEN_AMPLITUDES.name,
-                value,
-                Dimension::LENGTH,
-                "greater than 0",
-            ));
-        }
         let about = inputs.number(&schema::ABOUT, &plan.about)?;
         let pause = inputs.number(&schema::PAUSE, &plan.pause)?;
         let speed = inputs.speed(plan.speed.as_ref())?;
