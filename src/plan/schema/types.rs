@@ -243,8 +243,7 @@ pub struct ResultKind {
     pub count: bool,
     /// Whether it is a list of numbers of one dimension: `max(fatigue.energies)`.
     pub list: bool,
-    /// Whether it is a fraction that is printed in percent.
-    pub fraction: bool,
+    pub printed: Printed,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
     /// Whether a frame of matrices with elements has an entry for each element, not for each degree of freedom.
@@ -264,6 +263,16 @@ pub struct ResultKind {
     /// The values that it can have.
     pub possible: Possible,
     pub doc: &'static str,
+}
+
+/// How the value of a result is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Printed {
+    InUnits,
+    /// A fraction, in percent.
+    InPercent,
+    /// A number just below 1, to six decimals: its nines count.
+    NearOne,
 }
 
 /// A peak of an impact or of a ground-motion test, or that of the last impact of a series.
