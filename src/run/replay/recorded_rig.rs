@@ -307,9 +307,10 @@ impl WholeSteps for RecordedRig<'_> {
             .add_to_digest("a target", |digest| digest.target(&target))
             .map_err(ended(false))?;
         let rig = self.rig().map_err(ended(false))?;
-        if let Some(rig) = rig.at_once() {
-            rig.step(targets, speed, pause, reading)?;
-        }
+        let rig = rig
+            .at_once()
+            .expect("a recorded rig does whole steps only if its rig does");
+        rig.step(targets, speed, pause, reading)?;
         to_log_time(reading, self.offset.unwrap_or(0.0))
             .or_else(|fault| self.failed(Call::Read, fault))
             .and_then(|()| self.log_reading(reading, None))
