@@ -112,11 +112,7 @@ pub(crate) fn growth_of_frame<S: Floors>(
         delay(plan, stepping, time_step),
         uncertain(plan, stepping.mode),
     );
-    let amplitude = steps
-        .iter()
-        .flat_map(S::computed)
-        .map(|displacement| displacement.abs())
-        .fold(0.0, f64::max);
+    let amplitude = peak(steps.iter().flat_map(S::computed));
     let Some(modes) = modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };
