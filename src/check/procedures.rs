@@ -228,7 +228,7 @@ pub fn check_axes(
     };
     axes::check_specimen(checker, rig, specimen);
     let frame = specimen.frame.as_ref();
-    let has_elements = frame.is_some_and(|frame| !frame.elements.is_empty());
+    let has_elements = frame.is_some_and(Frame::has_elements);
     if has_elements {
         for (block, procedure) in procedures {
             let kind = procedure.as_ref().map(|procedure| &procedure.kind);

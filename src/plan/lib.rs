@@ -3,6 +3,7 @@
 
 pub mod contribution;
 pub mod formula;
+mod ground;
 pub mod procedures;
 pub mod record;
 pub mod report;
@@ -12,7 +13,6 @@ pub mod rig;
 pub mod scaled;
 pub mod schema;
 pub mod source;
-pub mod specimen;
 pub mod study;
 pub mod time_step;
 pub mod uncertainty;
@@ -46,6 +46,7 @@ pub use psd_physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
+pub use ground::{Ground, MOST_STOREYS, ShakeDamping, rayleigh};
 pub use procedures::parameters::*;
 pub use procedures::{ProcedureBlock, ProcedureKind};
 pub use psd_physics::statistics::DeclaredNoise;
@@ -64,7 +65,6 @@ pub use rig::{
     ModbusNumber, PortPlan, PretestCheck, ReadingErrors, ReadingRules, RealLink, RigPlan,
     SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
-pub use specimen::frame::{Ground, MOST_STOREYS, ShakeDamping, rayleigh};
 pub use study::{Collected, Fragility, Studies, Study, StudyEvent, StudyRequirement};
 
 /// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.
@@ -125,6 +125,12 @@ impl Plan {
     #[must_use]
     pub fn frame_on_the_rig(&self) -> Option<&Frame> {
         self.specimen_on_the_rig()?.frame.as_ref()
+    }
+
+    /// Whether the rig tests a frame of matrices with elements.
+    #[must_use]
+    pub fn tests_elements(&self) -> bool {
+        self.frame_on_the_rig().is_some_and(Frame::has_elements)
     }
 
     /// The specimen on the rig, if only a test on a real rig can measure its restoring force.

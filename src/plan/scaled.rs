@@ -2,7 +2,7 @@
 //! Out: words.
 
 use crate::{Frame, Plan, Scale};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_text::units::Dimension;
 use psd_text::units::display::plain;
 
@@ -60,10 +60,10 @@ pub fn numbers_on_the_rig(frame: &Frame) -> Option<String> {
     let number = |value: f64| plain(value, Dimension::NUMBER, 4);
     let specimen = |(of, scale): (String, Scale)| {
         let (drift, shear) = (number(scale.displacement), number(1.0 / scale.forces()));
-        let [of_drift, of_shear] = if frame.elements.is_empty() {
-            ["drift", "shear"]
-        } else {
+        let [of_drift, of_shear] = if frame.has_elements() {
             ["deformation", "force"]
+        } else {
+            ["drift", "shear"]
         };
         format!("{of}: {drift} × {of_drift}, {shear} × {of_shear}")
     };

@@ -93,12 +93,6 @@ impl<'record> Inputs<'record> {
         Ok(estimate)
     }
 
-    /// A number that a measurement may bring outside of the range of its field.
-    pub(crate) fn unbounded(&mut self, field: &Field, formula: &Formula) -> Result<f64, Stop> {
-        self.evaluate(field.name, formula, dimension_of(field), None)
-            .map(|estimate| estimate.value)
-    }
-
     /// A number in the range of a field that the record has under the name `input`.
     pub(crate) fn named(
         &mut self,
@@ -116,8 +110,8 @@ impl<'record> Inputs<'record> {
     /// Damping, or its ratio: at least 0. A measured value below 0 by no more than its expanded uncertainty is set to 0,
     /// with its uncertainty.
     pub(crate) fn damping(&mut self, field: &Field, formula: &Formula) -> Result<f64, Stop> {
-        let value = self.unbounded(field, formula)? + self.lift;
         let (field, dimension) = (field.name, dimension_of(field));
+        let value = self.evaluate(field, formula, dimension, None)?.value + self.lift;
         if value >= 0.0 {
             return Ok(value);
         }
@@ -157,19 +151,20 @@ impl<'record> Inputs<'record> {
             .transpose()
     }
 
-    /// Every entry of a list. The record contains them as the commands of its steps.
+    /// Every entry of a list, each in the range of its field. The record contains them as the commands of its steps.
     pub(crate) fn list(&self, field: &Field, formulas: &[Formula]) -> Result<Vec<f64>, Stop> {
-        let field = field.name;
         let value = |formula: &Formula| {
-            formula
-                .evaluate(self.results, None)
-                .map(|estimate| estimate.value)
+            let evaluated = formula.evaluate(self.results, None);
+            let field_name = field.name;
+            let value = evaluated
+                .map_err(|error| Stop::NoInput {
+                    field: field_name,
+                    error,
+                })?
+                .value;
+            in_range(field_name, value, field).map(|()| value)
         };
-        formulas
-            .iter()
-            .map(value)
-            .collect::<Result<_, _>>()
-            .map_err(|error| Stop::NoInput { field, error })
+        formulas.iter().map(value).collect()
     }
 
     fn evaluate(
@@ -193,15 +188,11 @@ fn dimension_of(field: &Field) -> Dimension {
 }
 
 /// Refuses a value outside of the range of a field; the message has the name `input`.
-fn in_range(input: &'static str, value: f64, field: &Field) -> Result<(), Stop> {
-    let range = field.range;
-    if range.contains(value) {
+pub(crate) fn in_range(input: &'static str, value: f64, field: &Field) -> Result<(), Stop> {
+    if field.range.contains(value) {
         return Ok(());
     }
-    let wanted = match (value > range.high, range.above) {
-        (true, _) => format!("at most {}", range.high),
-        (false, true) => format!("greater than {}", range.low),
-        (false, false) => format!("at least {}", range.low),
-    };
-    Err(Stop::bad_input(input, value, dimension_of(field), wanted))
+    let dimension = dimension_of(field);
+    let wanted = field.range.in_words(dimension);
+    Err(Stop::bad_input(input, value, dimension, wanted))
 }

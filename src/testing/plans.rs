@@ -279,7 +279,7 @@ pub fn every(time_step: f64) -> Stepping {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
-        mode: Mode::StepAndPause,
+        mode: Mode::RampAndHold,
         time_step: Formula::Constant(time_step),
         pause: Formula::Constant(0.0),
         max_tangent_ratio: Formula::Constant(10.0),

@@ -3,7 +3,7 @@
 use super::{Bound, ConditionOutcome, Verdict};
 use psd_physics::statistics::student_t;
 use psd_plan::formula::{Formula, FormulaError, Operator, ResultPart, Results, UncertaintyStatus};
-use psd_plan::schema::is_in_percent;
+use psd_plan::schema::{Printed, printed};
 use psd_plan::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use psd_plan::{Comparison, Condition, DecisionRule, Test};
 use psd_text::units::Dimension;
@@ -96,8 +96,10 @@ pub(super) fn decide(
 fn in_percent(condition: &Condition) -> bool {
     let mut references = Vec::new();
     condition.value.collect_references(&mut references);
-    let fractions =
-        !references.is_empty() && references.iter().all(|read| is_in_percent(read.name));
+    let fractions = !references.is_empty()
+        && references
+            .iter()
+            .all(|read| printed(read.name) == Printed::InPercent);
     let stated = matches!(condition.test, Test::Compare { .. }) && condition.text.contains('%');
     condition.dimension == Dimension::NUMBER && (fractions || stated)
 }

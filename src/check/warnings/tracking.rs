@@ -162,6 +162,6 @@ fn remedy(stepping: &Stepping, link: &VirtualLink, delay: Delay, part: f64) -> R
         _ if link.lag == 0.0 => Remedy::Shorter(part * delay.time_step),
         Mode::Continuous { time_scale } => Remedy::Slower(time_scale / part),
         // The remaining lag after a step decays with its time constant.
-        Mode::StepAndPause => Remedy::Longer(-link.lag * part.ln()),
+        Mode::RampAndHold => Remedy::Longer(-link.lag * part.ln()),
     }
 }

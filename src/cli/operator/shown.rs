@@ -3,7 +3,7 @@
 //! the last axis is shown alone: the sum of forces of several specimens is not the shear of any storey.
 
 use psd::run::StepReport;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::Plan;
 
 /// The part of a step that is shown.
@@ -28,7 +28,7 @@ pub struct Names {
 impl Shown {
     pub fn of(plan: &Plan) -> Self {
         let frame = plan.frame_on_the_rig();
-        let is_element = frame.is_some_and(|frame| !frame.elements.is_empty());
+        let is_element = plan.tests_elements();
         let assemblies = frame.and_then(Assemblies::of);
         let last_axis = assemblies.filter(|assemblies| !assemblies.is_whole_frame());
         let last_axis = last_axis.and_then(|assemblies| {

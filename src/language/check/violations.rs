@@ -7,7 +7,7 @@ use crate::codes::{
     E610, E612, E614, E632, E635, E661, E662, E663, W728,
 };
 use crate::syntax::ast::Ident;
-use psd_plan::schema::{BlockKind, Field, Kind, Range, rig as schema};
+use psd_plan::schema::{BlockKind, Field, Kind, rig as schema};
 use psd_plan::{Dialect, Interval};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
@@ -496,28 +496,6 @@ pub struct ExponentTooLarge {
     pub span: Span,
 }
 
-fn allowed(range: Range, dimension: Dimension) -> String {
-    let number = |value: f64| ((value * 1e4).round() / 1e4).to_string();
-    let show = |value: f64| {
-        if dimension == Dimension::NUMBER || value == 0.0 {
-            number(value)
-        } else {
-            shown(value, dimension)
-        }
-    };
-    match (range.low.is_finite(), range.above, range.high.is_finite()) {
-        (true, true, false) => format!("greater than {}", show(range.low)),
-        (true, false, false) => format!("at least {}", show(range.low)),
-        (true, true, true) => format!(
-            "greater than {} and at most {}",
-            show(range.low),
-            show(range.high)
-        ),
-        (true, false, true) => format!("between {} and {}", show(range.low), show(range.high)),
-        _ => format!("at most {}", show(range.high)),
-    }
-}
-
 pub struct OutOfRange<'a> {
     pub field: &'a Field,
     pub dimension: Dimension,
@@ -537,7 +515,7 @@ impl Violation for OutOfRange<'_> {
             text,
             span,
         } = self;
-        let allowed = allowed(field.range, dimension);
+        let allowed = field.range.in_words(dimension);
         let is = if dimension == Dimension::NUMBER {
             value.to_string()
         } else {

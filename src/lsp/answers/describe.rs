@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use psd_plan::schema::{BlockKind, Field, FieldType, Naming, Presence, Range, ResultKind, Variant};
+use psd_plan::schema::{
+    BlockKind, Field, FieldType, Naming, Presence, Printed, Range, ResultKind, Variant,
+};
 use psd_text::units::display::readable;
 use psd_text::units::{Dimension, display};
 
@@ -86,7 +88,7 @@ pub fn call(variant: &Variant) -> String {
 /// A result of a procedure.
 pub fn result(result: &ResultKind) -> String {
     let several = if result.list { "list of " } else { "" };
-    let unit = if result.fraction {
+    let unit = if result.printed == Printed::InPercent {
         "%".to_owned()
     } else {
         display::si_unit(result.dimension)

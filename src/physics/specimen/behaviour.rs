@@ -1,29 +1,13 @@
 //! What follows from the parameters of a model: its stiffnesses, its capacity, its masses. In: a [`Behaviour`]. Out: numbers in SI. It
 //! has no state.
 
-use super::declaration::{Numbers, Stated};
-use super::{Behaviour, Breaks, MODELS, Pinching};
+use super::{Behaviour, Breaks, Pinching};
 use crate::relaxation::logarithmic::LogarithmicRelaxation;
 use crate::structure::beam::{self, EquivalentMasses};
 use crate::structure::portal::Portal;
 use crate::structure::portal::mass;
 
 impl Behaviour {
-    /// The model with this word in a plan, if its parameters are numbers. `number` gives a parameter by its name. None for the word of
-    /// another model, or without a number that it requires.
-    pub fn of_numbers(word: &str, number: impl Fn(&str) -> Option<f64>) -> Option<Self> {
-        let declared = MODELS.iter().find(|declared| declared.word == word)?;
-        (declared.model)(Stated(&number))
-    }
-
-    /// Its word in a plan and its numbers, as [`Self::of_numbers`] takes them; None for a model with other parameters.
-    #[must_use]
-    pub fn numbers(&self) -> Option<(&'static str, Numbers)> {
-        MODELS
-            .iter()
-            .find_map(|declared| Some((declared.word, (declared.numbers)(self)?)))
-    }
-
     /// Whether the force is the stiffness times the displacement at any displacement.
     #[must_use]
     pub const fn is_elastic(&self) -> bool {

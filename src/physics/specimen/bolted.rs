@@ -1,40 +1,7 @@
 //! A bolted joint: clamped faces that slip, then the bolt bears on the edge of its hole, which grows when it yields. In: a displacement.
 //! Out: the force there, by exact return maps.
 
-use super::declaration::{Declaration, Parameter, STIFFNESS, Unit, declaration};
-use super::{Behaviour, Bilinear, BilinearCurve, RestoringForce};
-
-const BEARING_FORCE: Parameter = Parameter::new(
-    "bearing_force",
-    Unit::NEWTON,
-    "force at which a hole yields and elongates",
-)
-.required("bearing_force: 5 kN")
-.above_zero();
-
-const CLEARANCE: Parameter = Parameter::new(
-    "clearance",
-    Unit::METRE,
-    "clearance: displacement from centre to bearing",
-)
-.or(0.0, "mm")
-.at_least_zero();
-
-const SLIP_FORCE: Parameter =
-    Parameter::new("slip_force", Unit::NEWTON, "friction of the clamped faces")
-        .or(0.0, "N")
-        .at_least_zero();
-
-pub(super) static DECLARATION: Declaration = declaration!(
-    "bolted",
-    "bolted joint: friction, clearance, bearing, holes that elongate",
-    Bolted(Bolted {
-        stiffness: STIFFNESS,
-        bearing_force: BEARING_FORCE,
-        clearance: CLEARANCE,
-        slip_force: SLIP_FORCE,
-    })
-);
+use super::{Bilinear, BilinearCurve, RestoringForce};
 
 /// Parameters of a bolted joint.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,36 +1,7 @@
 //! Smooth hysteresis after Bouc and Wen, independent of rate. In: a displacement. Out: the force there, integrated over the
 //! displacement to a stated error, for a move of any length.
 
-use super::declaration::{
-    Declaration, POST_YIELD_RATIO, Parameter, STIFFNESS, Unit, YIELD_FORCE, declaration,
-};
-use super::{Behaviour, BilinearCurve, RestoringForce};
-
-/// n
-const SHARPNESS: Parameter = Parameter::new("n", Unit::ONE, "sharpness of the yield transition")
-    .or(1.0, "")
-    .within(1.0, 100.0);
-
-/// β
-const BETA: Parameter = Parameter::new(
-    "beta",
-    Unit::ONE,
-    "shape of unloading: straight at 0.5; γ is 1 − β",
-)
-.or(0.5, "")
-.within(0.5, 1.0);
-
-pub(super) static DECLARATION: Declaration = declaration!(
-    "bouc_wen",
-    "smooth hysteresis of Bouc and Wen",
-    BoucWen {
-        stiffness: STIFFNESS,
-        yield_force: YIELD_FORCE,
-        post_yield_ratio: POST_YIELD_RATIO,
-        sharpness: SHARPNESS,
-        beta: BETA,
-    }
-);
+use super::{BilinearCurve, RestoringForce};
 
 /// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], known as the Bouc–Wen model, normalised to γ = 1 − β, so
 /// that z tends to ±1. Its dissipation beyond the elastic energy ½z² F_y/K is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)). This

@@ -1,33 +1,6 @@
 //! Stiffness that falls with the peak displacement. In: a displacement. Out: the force there, exact for a move of any length.
 
-use super::declaration::{Declaration, Parameter, STIFFNESS, Unit, declaration};
-use super::{Behaviour, RestoringForce};
-
-const HALF_DISPLACEMENT: Parameter = Parameter::new(
-    "half_displacement",
-    Unit::METRE,
-    "peak displacement at which half of the loss has occurred",
-)
-.required("half_displacement: 5 mm")
-.above_zero();
-
-const RESIDUAL: Parameter = Parameter::new(
-    "residual",
-    Unit::ONE,
-    "stiffness that always remains, over the initial stiffness",
-)
-.or(0.0, "")
-.within(0.0, 1.0);
-
-pub(super) static DECLARATION: Declaration = declaration!(
-    "degrading",
-    "stiffness falls with the peak displacement; unloads to the origin",
-    Degrading {
-        stiffness: STIFFNESS,
-        half_displacement: HALF_DISPLACEMENT,
-        residual: RESIDUAL,
-    }
-);
+use super::RestoringForce;
 
 /// R = K(x_m) X with the peak displacement x_m so far, K(x) = K (r + (1 − r)/(1 + x/h)): half of the loss occurs at x = h. Without a
 /// residual the backbone is the hyperbola R = K X/(1 + X/h), which never exceeds K h. It unloads to the origin: a crack closes, without

@@ -5,11 +5,11 @@ mod behaviour;
 mod bilinear;
 mod bolted;
 mod bouc_wen;
-pub mod declaration;
 mod degrading;
 mod deterioration;
 mod fracture;
 mod multilinear;
+pub mod numbers;
 mod series;
 mod table;
 #[cfg(test)]
@@ -19,11 +19,10 @@ pub(crate) use bilinear::BilinearLines;
 pub use bilinear::{Bilinear, BilinearCurve};
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
-pub use declaration::{Declaration, Parameter};
 pub use degrading::{Degrading, DegradingCurve};
 pub use deterioration::Deterioration;
 pub use deterioration::bilinear::DeterioratingBilinear;
-pub use deterioration::pinching::{self, Capping, PinchedHysteresis, Pinching};
+pub use deterioration::pinching::{Capping, PinchedHysteresis, Pinching};
 pub use fracture::{Breaks, Fracture};
 pub use multilinear::Multilinear;
 pub use series::Series;
@@ -31,17 +30,6 @@ pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
 
 use crate::structure::beam::Beam;
 use crate::structure::portal::Portal;
-use declaration::{STIFFNESS, declaration};
-
-/// The models whose parameters are numbers. Each is declared in its own file.
-pub static MODELS: [&Declaration; 6] = [
-    &ELASTIC,
-    &deterioration::bilinear::DECLARATION,
-    &bouc_wen::DECLARATION,
-    &deterioration::pinching::DECLARATION,
-    &degrading::DECLARATION,
-    &bolted::DECLARATION,
-];
 
 /// Restoring force of a simulated specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,14 +116,6 @@ pub trait RestoringForce {
 pub struct Elastic {
     pub stiffness: f64,
 }
-
-static ELASTIC: Declaration = declaration!(
-    "elastic",
-    "linear spring",
-    Elastic {
-        stiffness: STIFFNESS
-    }
-);
 
 impl RestoringForce for Elastic {
     fn move_to(&mut self, displacement: f64) -> f64 {

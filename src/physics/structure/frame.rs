@@ -280,7 +280,7 @@ impl Frame {
     /// The same frame of matrices with these elements beside its stiffness, which is then computed.
     #[must_use]
     pub fn with_elements(mut self, elements: Vec<Element>) -> Self {
-        if !self.elements.is_empty() {
+        if self.has_elements() {
             self.stiffness = std::mem::take(&mut self.computed_stiffness);
         }
         if !elements.is_empty() {
@@ -321,7 +321,7 @@ impl Frame {
     /// # Errors
     /// The stiffness of the files is not square or not symmetric.
     pub fn elements(&self) -> Result<Option<Elements>, RowsError> {
-        if self.elements.is_empty() {
+        if !self.has_elements() {
             return Ok(None);
         }
         let members = || self.members();
@@ -340,7 +340,7 @@ impl Frame {
     /// # Errors
     /// The stiffness of the files is not square or not symmetric.
     pub fn assembled(&self, members: &[f64]) -> Result<SymmetricBand, RowsError> {
-        if self.elements.is_empty() {
+        if !self.has_elements() {
             return Ok(storey_stiffness(members));
         }
         let mut stiffness = SymmetricBand::from_dense(&self.computed_stiffness)?;
@@ -395,17 +395,23 @@ impl Frame {
     /// `storey` or `element`, for messages and reports.
     #[must_use]
     pub const fn word_for_a_member(&self) -> &'static str {
-        if self.elements.is_empty() {
-            "storey"
-        } else {
+        if self.has_elements() {
             "element"
+        } else {
+            "storey"
         }
+    }
+
+    /// Whether it is a frame of matrices with elements beside its stiffness.
+    #[must_use]
+    pub const fn has_elements(&self) -> bool {
+        !self.elements.is_empty()
     }
 
     /// Whether the rig carries it as a whole, by its matrices.
     #[must_use]
     pub const fn is_matrix_on_the_rig(&self) -> bool {
-        self.storeys.is_empty() && self.elements.is_empty()
+        self.storeys.is_empty() && !self.has_elements()
     }
 
     /// Actuators that it needs, each with a load cell: one at every floor, or at every tested storey or element.
@@ -441,7 +447,7 @@ impl Frame {
     /// The same frame with other matrices of the files: each times its factor.
     #[must_use]
     pub fn scaled(&self, [mass, stiffness]: [f64; 2]) -> Self {
-        if !self.elements.is_empty() {
+        if self.has_elements() {
             let alone = self.clone().with_elements(Vec::new());
             return alone
                 .scaled([mass, stiffness])

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mode {
     /// The actuator stops at every target; the reading is at rest.
-    StepAndPause,
+    RampAndHold,
     /// The actuator does not stop: laboratory time is `time_scale` times simulated time. The force includes the damper force at that
     /// speed.
     Continuous { time_scale: f64 },

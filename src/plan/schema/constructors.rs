@@ -1,7 +1,7 @@
 //! Constructors of the entries of the schema, to be chained: `Field::quantity(…).above_zero().required(…)`.
 
 use super::types::{
-    Field, FieldType, Kind, Peak, Possible, Presence, Range, ResultKind, RigKind, Variant,
+    Field, FieldType, Kind, Peak, Possible, Presence, Printed, Range, ResultKind, RigKind, Variant,
 };
 use psd_text::units::Dimension;
 
@@ -230,7 +230,7 @@ impl ResultKind {
             measured: false,
             count: false,
             list: false,
-            fraction: false,
+            printed: Printed::InUnits,
             of_storey: false,
             of_each_member: false,
             of_elements: false,
@@ -252,7 +252,15 @@ impl ResultKind {
     /// A fraction is printed in percent.
     pub const fn in_percent(self) -> Self {
         Self {
-            fraction: true,
+            printed: Printed::InPercent,
+            ..self
+        }
+    }
+
+    /// A number just below 1 is printed to its nines.
+    pub const fn near_one(self) -> Self {
+        Self {
+            printed: Printed::NearOne,
             ..self
         }
     }

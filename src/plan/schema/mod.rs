@@ -19,8 +19,8 @@ pub use columns::Column;
 pub use functions::{CONSTANTS, FUNCTIONS, FunctionKind, Takes, constant};
 pub use synonyms::SYNONYMS;
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Peak, Possible, Presence, Range, ResultKind,
-    RigKind, Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Peak, Possible, Presence, Printed, Range,
+    ResultKind, RigKind, Variant,
 };
 
 use psd_text::units::{Dimension, display};
@@ -96,21 +96,21 @@ pub const fn block(kind: Kind) -> &'static BlockKind {
     }
 }
 
-/// Whether a result is a fraction that is printed in percent. The name of its procedure and an index may be part of the name.
+/// How a result is printed. The name of its procedure and an index may be part of the name.
 #[must_use]
-pub fn is_in_percent(result: &str) -> bool {
+pub fn printed(result: &str) -> Printed {
     let name = result.rsplit('.').next().unwrap_or(result);
     let name = name.split('[').next().unwrap_or(name);
-    BLOCKS
-        .iter()
-        .flat_map(|block| block.results)
-        .any(|kind| kind.fraction && kind.name == name)
+    let mut results = BLOCKS.iter().flat_map(|block| block.results);
+    results
+        .find(|kind| kind.name == name && kind.printed != Printed::InUnits)
+        .map_or(Printed::InUnits, |kind| kind.printed)
 }
 
 /// The unit that a result is printed in, and its factor to SI units.
 #[must_use]
 pub fn printed_unit(result: &str, value: f64, dimension: Dimension) -> (String, f64) {
-    if is_in_percent(result) {
+    if printed(result) == Printed::InPercent {
         ("%".to_owned(), 0.01)
     } else {
         display::unit(value, dimension)

@@ -1,7 +1,7 @@
 //! The types of the schema's entries, and small look-ups in them.
 
 use crate::ProcedureBlock;
-use psd_text::units::Dimension;
+use psd_text::units::{Dimension, display};
 
 /// The kind of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,6 +206,26 @@ impl Range {
             value >= self.low
         }) && value <= self.high
     }
+
+    /// Which values are allowed, in usual units: `greater than 0`, `between 1 mm and 1 m`.
+    #[must_use]
+    pub fn in_words(self, dimension: Dimension) -> String {
+        let show = |value: f64| {
+            if dimension == Dimension::NUMBER || value == 0.0 {
+                ((value * 1e4).round() / 1e4).to_string()
+            } else {
+                display::plain(value, dimension, 4)
+            }
+        };
+        let (low, high) = (show(self.low), show(self.high));
+        match (self.low.is_finite(), self.above, self.high.is_finite()) {
+            (true, true, false) => format!("greater than {low}"),
+            (true, false, false) => format!("at least {low}"),
+            (true, true, true) => format!("greater than {low} and at most {high}"),
+            (true, false, true) => format!("between {low} and {high}"),
+            _ => format!("at most {high}"),
+        }
+    }
 }
 
 /// A value that can be read from outside its block.
@@ -223,8 +243,7 @@ pub struct ResultKind {
     pub count: bool,
     /// Whether it is a list of numbers of one dimension: `max(fatigue.energies)`.
     pub list: bool,
-    /// Whether it is a fraction that is printed in percent.
-    pub fraction: bool,
+    pub printed: Printed,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
     /// Whether a frame of matrices with elements has an entry for each element, not for each degree of freedom.
@@ -244,6 +263,16 @@ pub struct ResultKind {
     /// The values that it can have.
     pub possible: Possible,
     pub doc: &'static str,
+}
+
+/// How the value of a result is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Printed {
+    InUnits,
+    /// A fraction, in percent.
+    InPercent,
+    /// A number just below 1, to six decimals: its nines count.
+    NearOne,
 }
 
 /// A peak of an impact or of a ground-motion test, or that of the last impact of a series.

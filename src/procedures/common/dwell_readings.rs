@@ -23,6 +23,18 @@ pub(crate) struct DwellReadings {
 }
 
 impl DwellReadings {
+    /// One reading at a rig time \[s\], before or during a motion: no scatter, no relaxation.
+    pub(crate) const fn single(read: (f64, f64), wall_time: f64) -> Self {
+        Self {
+            displacement: read.0,
+            restoring_force: read.1,
+            force_scatter: 0.0,
+            relaxation: 0.0,
+            wall_time,
+            broken: None,
+        }
+    }
+
     /// Waits for `pause` \[s\] and reads so many samples after the `settled` reading. If that is `broken`, it is the only one.
     pub(crate) fn take(
         settled: &Reading,

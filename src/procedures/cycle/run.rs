@@ -128,22 +128,6 @@ struct SampledMotion {
     speed: f64,
 }
 
-/// The reading at one target.
-struct TargetReading {
-    /// \[m\]
-    command: f64,
-    /// \[m\]
-    displacement: f64,
-    /// \[N\]
-    restoring_force: f64,
-    /// \[N\]
-    force_scatter: f64,
-    /// \[N\]
-    relaxation: f64,
-    /// Rig time \[s\].
-    wall_time: f64,
-}
-
 struct Cycling {
     history: CycleHistory,
     /// Requested amplitude \[m\].
@@ -164,18 +148,6 @@ impl Cycling {
             .map(|level| level.amplitude.clone())
             .collect::<Vec<_>>();
         let amplitudes = inputs.list(&schema::GIVEN_AMPLITUDES, &amplitudes)?;
-        if let Some(value) = amplitudes
-            .iter()
-            .copied()
-            .find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite()))
-        {
-            return Err(Stop::bad_input(
-                schema::GIVEN_AMPLITUDES.name,
-                value,
-                Dimension::LENGTH,
-                "greater than 0",
-            ));
-        }
         let about = inputs.number(&schema::ABOUT, &plan.about)?;
         let pause = inputs.number(&schema::PAUSE, &plan.pause)?;
         let speed = inputs.speed(plan.speed.as_ref())?;
@@ -275,19 +247,7 @@ impl Cycling {
     ) -> Result<(), Stop> {
         let (settled, broken) = session.read_after(moved)?;
         let dwell = DwellReadings::take(&settled, broken, manner.pause, manner.samples, session)?;
-        let reading = TargetReading {
-            command,
-            displacement: dwell.displacement,
-            restoring_force: dwell.restoring_force,
-            force_scatter: dwell.force_scatter,
-            relaxation: dwell.relaxation,
-            wall_time: dwell.wall_time,
-        };
-        if let Some(stop) = dwell.broken {
-            self.keep(&reading);
-            return Err(stop);
-        }
-        self.take(&reading, session)
+        self.take(command, dwell, session)
     }
 
     /// Moves to `to` without a stop and reads during the motion.
@@ -323,26 +283,26 @@ impl Cycling {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
             let share = (f64::from(sample) / samples as f64).min(1.0);
             let command = from + (to - from) * share;
-            let (displacement, restoring_force) = first(reading);
-            let reading = TargetReading {
-                command,
-                displacement,
-                restoring_force,
-                force_scatter: 0.0,
-                relaxation: 0.0,
-                wall_time: reading.time,
-            };
+            let reading = DwellReadings::single(first(reading), reading.time);
             if sample as usize > whole {
-                self.keep(&reading);
+                self.keep(command, &reading);
             } else {
-                self.take(&reading, session)?;
+                self.take(command, reading, session)?;
             }
         }
         traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
     }
 
-    fn take(&mut self, reading: &TargetReading, session: &mut Session<'_>) -> Result<(), Stop> {
-        let step = self.keep(reading);
+    fn take(
+        &mut self,
+        command: f64,
+        reading: DwellReadings,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let step = self.keep(command, &reading);
+        if let Some(stop) = reading.broken {
+            return Err(stop);
+        }
         session.measured(
             step,
             reading.wall_time,
@@ -351,14 +311,14 @@ impl Cycling {
     }
 
     /// Records a step and returns its number.
-    fn keep(&mut self, reading: &TargetReading) -> u64 {
-        let TargetReading {
-            command,
+    fn keep(&mut self, command: f64, reading: &DwellReadings) -> u64 {
+        let DwellReadings {
             displacement,
             restoring_force,
             force_scatter,
             relaxation,
             wall_time,
+            ..
         } = *reading;
         let steps = &mut self.history.steps;
         let energy = steps.last().map_or(0.0, |before| {

@@ -204,21 +204,13 @@ impl Sweep {
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
         let velocities = inputs.list(&schema::VELOCITIES, &plan.velocities)?;
-        let stroke = inputs.unbounded(&schema::STROKE, &plan.stroke)?;
+        let stroke = inputs.number(&schema::STROKE, &plan.stroke)?;
         let stiffness = inputs.estimate(&schema::STIFFNESS, &plan.stiffness, None)?;
         let rate = plan
             .rate
             .as_ref()
             .map(|rate| inputs.number(&schema::RATE, rate))
             .transpose()?;
-        if stroke == 0.0 {
-            return Err(Stop::bad_input(
-                schema::STROKE.name,
-                stroke,
-                Dimension::LENGTH,
-                "other than 0",
-            ));
-        }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
             let middle = inputs.number(&schema::ABOUT, about)?;
@@ -228,21 +220,12 @@ impl Sweep {
         }
         let home = session.commanded();
         for velocity in velocities {
-            if velocity == 0.0 {
-                return Err(Stop::bad_input(
-                    schema::VELOCITIES.name,
-                    velocity,
-                    Dimension::VELOCITY,
-                    "other than 0",
-                ));
-            }
-            let seconds = (stroke / velocity).abs();
+            let seconds = stroke / velocity;
             let samples = self.samples(seconds, rate)?;
-            let speed = velocity.abs().copysign(stroke);
             let out_pass = Pass {
                 from: home,
                 to: home + stroke,
-                velocity: speed,
+                velocity,
                 seconds,
                 samples,
             };
@@ -251,7 +234,7 @@ impl Sweep {
                 Pass {
                     from: out_pass.to,
                     to: home,
-                    velocity: -speed,
+                    velocity: -velocity,
                     ..out_pass
                 },
                 session,
@@ -260,7 +243,7 @@ impl Sweep {
             self.strokes.push(Stroke {
                 out,
                 back,
-                speed: speed.abs(),
+                speed: velocity,
                 seconds,
                 on_grid,
             });

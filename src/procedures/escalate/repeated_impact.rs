@@ -11,9 +11,7 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::impact::ImpactInput;
 use psd_physics::structure::Unloading;
-use psd_plan::procedures::escalate::block::SPEEDS;
 use psd_plan::{Escalate, Impact, ImpactTarget, Plan, Striker};
-use psd_text::units::Dimension;
 
 pub(crate) struct RepeatedImpact<'a> {
     plan: &'a Impact,
@@ -80,23 +78,5 @@ impl<'a> RepeatedImpact<'a> {
     /// The unloading path after an impact.
     pub(crate) const fn unloading(&self) -> &Unloading {
         &self.unloading
-    }
-}
-
-/// The velocity of the striker in each impact \[m/s\], each above 0.
-pub(crate) fn velocities(plan: &Escalate, inputs: &Inputs<'_>) -> Result<Vec<f64>, Stop> {
-    let velocities = inputs.list(&SPEEDS, &plan.velocities)?;
-    match velocities
-        .iter()
-        .copied()
-        .find(|velocity| !(*velocity > 0.0 && velocity.is_finite()))
-    {
-        Some(value) => Err(Stop::bad_input(
-            SPEEDS.name,
-            value,
-            Dimension::VELOCITY,
-            "greater than 0",
-        )),
-        None => Ok(velocities),
     }
 }

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::repeated_impact::{RepeatedImpact, velocities};
+use super::repeated_impact::RepeatedImpact;
 use super::results::{Left, results};
 use crate::procedures::common::calibrated_range;
 use crate::procedures::common::perturbed_inputs::UncertainRun;
@@ -50,7 +50,7 @@ fn run(
     session: &mut Session<'_>,
     history: &mut EscalateHistory,
 ) -> Result<(), Stop> {
-    let velocities = velocities(plan, inputs)?;
+    let velocities = inputs.list(&schema::SPEEDS, &plan.velocities)?;
     let mut impact = RepeatedImpact::evaluate(plan, &velocities, whole, inputs, session)?;
     // As the plan gives them: in floating point, the square of a root is not always the number itself.
     let energies = plan

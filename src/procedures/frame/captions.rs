@@ -5,7 +5,7 @@ use crate::report::wording::specimen::{measured, weights};
 
 /// The caption of the drifts.
 pub(crate) fn drifts(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let drift = if has_elements(run) {
+    let drift = if run.plan.tests_elements() {
         "deformation of each element"
     } else {
         "drift of each storey"
@@ -13,15 +13,9 @@ pub(crate) fn drifts(run: &Run<'_>, name: &str, chosen: &str) -> String {
     format!("{name}: {drift} against simulated time{chosen}.")
 }
 
-/// Whether the rig tests a frame of matrices with elements.
-pub(crate) fn has_elements(run: &Run<'_>) -> bool {
-    let frame = run.plan.frame_on_the_rig();
-    frame.is_some_and(|frame| !frame.elements.is_empty())
-}
-
 /// The caption of the loops.
 pub(crate) fn loops(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    if has_elements(run) {
+    if run.plan.tests_elements() {
         let force = measured("force of each element", run.plan.frame_on_the_rig());
         return format!(
             "{name}: {force} against its deformation; the area of a loop is the energy absorbed by the element{chosen}."
@@ -50,7 +44,7 @@ fn restoring_forces(run: &Run<'_>) -> String {
 
 /// The caption of the tracking of a frame.
 pub(crate) fn followed(run: &Run<'_>, name: &str, chosen: &str) -> String {
-    let of = if has_elements(run) {
+    let of = if run.plan.tests_elements() {
         "element"
     } else {
         "floor"

@@ -5,7 +5,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::budget_table;
 use crate::report::{Run, number};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::{SymmetricBand, storeys_of, widen};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors, Modes, NamedResult, ProcedureRecord};
@@ -35,7 +35,7 @@ pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> 
 
 /// Whether the stiffness is that of storeys or elements, each of which shows its own as it moves.
 pub(crate) fn has_tangents(frame: &Frame) -> bool {
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         return true;
     }
     SymmetricBand::from_dense(&frame.stiffness)

@@ -78,7 +78,7 @@ impl BatchedImpact {
         let specimen = &whole.specimens[plan.specimen];
         let behaviour = specimen.behaviour.as_ref()?;
         let undamped = specimen.damping == 0.0 && specimen.coulomb == 0.0;
-        if !(is_ideal(whole) && undamped && plan.stepping.mode == Mode::StepAndPause) {
+        if !(is_ideal(whole) && undamped && plan.stepping.mode == Mode::RampAndHold) {
             return None;
         }
         let striker = &whole.strikers[plan.striker];

@@ -59,7 +59,7 @@ pub(crate) fn chart(
             charts::displacement(&history.steps),
             format!(
                 "{name}: displacement of each {} relative to the ground against simulated time{}.",
-                charts::entries_of(captions::has_elements(run)),
+                charts::entries_of(run.plan.tests_elements()),
                 charts::chosen_floors(&history.steps)
             ),
         ),

@@ -9,7 +9,8 @@ use crate::run::stop::Stop;
 use psd_physics::reintegration::frame::{Floors, FrameRun};
 use psd_physics::reintegration::frame_path::{FramePath, FrameReading};
 use psd_physics::reintegration::recorded_path::ContinuousMotion;
-use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
+use psd_physics::structure::assemblies::{Assemblies, StoreyReadings};
+use psd_physics::structure::substructures::Substructures;
 use psd_plan::formula::{Formula, Operator};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{FloorMotion, NamedResult};
@@ -223,7 +224,7 @@ impl<'run> FrameUncertainty<'run> {
         let Some(frame) = self.frame else {
             return Vec::new();
         };
-        let has_elements = !frame.elements.is_empty();
+        let has_elements = frame.has_elements();
         let is_computed = |member: Member<'_>| member.part == Part::Computed;
         if !has_elements && !frame.members().any(is_computed) {
             return Vec::new();

@@ -7,9 +7,9 @@ use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit
 use crate::run::session::{Session, first};
 use psd_physics::impact::ImpactInput;
 use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::assemblies::StoreyReadings;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::StoreyReadings;
 use psd_physics::structure::{Matrices, drifts, shears, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::{Integrator, Mode, Stepping};
@@ -229,7 +229,7 @@ impl StifferSprings {
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
             noise: noise_of(&start.resolved[0]),
-            moving: plan.mode != Mode::StepAndPause,
+            moving: plan.mode != Mode::RampAndHold,
         };
         Self::of(vec![(
             "the specimen".to_owned(),
@@ -263,7 +263,7 @@ impl StifferSprings {
                     integrator: plan.integrator,
                     operator_stiffness: elements.operator_stiffness[element],
                     gravity: 0.0,
-                    moving: plan.mode != Mode::StepAndPause,
+                    moving: plan.mode != Mode::RampAndHold,
                     mobility: ends.map(floor).sum(),
                     time_step,
                     noise: noise_of(&start.resolved[element]),
@@ -287,7 +287,7 @@ impl StifferSprings {
                 integrator: plan.integrator,
                 operator_stiffness,
                 gravity: gravity(storey),
-                moving: plan.mode != Mode::StepAndPause,
+                moving: plan.mode != Mode::RampAndHold,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
                 noise: noise_of(&start.resolved[storey]),

@@ -8,7 +8,8 @@
 use super::tracking::delay;
 use crate::procedures::common::predicted::row;
 use psd_physics::statistics::DeclaredNoise;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::statistics::samples::peak;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{Floors, Modes};
 use psd_plan::{Link, Mode, Plan, Stepping};
 use psd_text::units::Dimension;
@@ -112,11 +113,7 @@ pub(crate) fn growth_of_frame<S: Floors>(
         delay(plan, stepping, time_step),
         uncertain(plan, stepping.mode),
     );
-    let amplitude = steps
-        .iter()
-        .flat_map(S::computed)
-        .map(|displacement| displacement.abs())
-        .fold(0.0, f64::max);
+    let amplitude = peak(steps.iter().flat_map(S::computed));
     let Some(modes) = modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };
@@ -198,7 +195,7 @@ fn uncertain(plan: &Plan, mode: Mode) -> f64 {
         Link::Real(link) => link.readings.resolution,
     };
     let lags = plan.rig.link.as_virtual().is_none_or(|link| link.lag > 0.0);
-    let settles = lags && mode == Mode::StepAndPause;
+    let settles = lags && mode == Mode::RampAndHold;
     let on_the_rig = DeclaredNoise {
         force: 0.0,
         resolution: 0.5 * resolution + if settles { plan.rig.settle.band } else { 0.0 },

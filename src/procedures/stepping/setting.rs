@@ -4,15 +4,15 @@
 
 use std::fmt::Display;
 
-use crate::run::inputs::Inputs;
+use crate::run::inputs::{Inputs, in_range};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::tangents::Tangents;
 use psd_physics::structure::Damping;
+use psd_physics::structure::assemblies::StoreyReadings;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::StoreyReadings;
 use psd_plan::record::EventKind;
 use psd_plan::schema::{frames, methods};
 use psd_plan::{
@@ -194,26 +194,15 @@ pub(crate) fn properties(
 
 /// The damping, and one of its ratios for a message.
 fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
-    let known = |ratio: f64| match ratio {
-        ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
-        value => Err(Stop::bad_input(
-            frames::DAMPING_RATIO.name,
-            value,
-            Dimension::NUMBER,
-            "between 0 and 1",
-        )),
-    };
+    let field = &frames::DAMPING_RATIO;
     Ok(match plan {
         ShakeDamping::Rayleigh(ratio) => {
-            let ratio = known(inputs.damping(&frames::DAMPING_RATIO, ratio)?)?;
+            let ratio = inputs.damping(field, ratio)?;
+            in_range(field.name, ratio, field)?;
             (rayleigh(ratio), ratio)
         }
         ShakeDamping::Modal(ratios) => {
-            let ratios = inputs.list(&frames::DAMPING_RATIO, ratios)?;
-            let ratios = ratios
-                .into_iter()
-                .map(known)
-                .collect::<Result<Vec<f64>, Stop>>()?;
+            let ratios = inputs.list(field, ratios)?;
             let first = ratios.first().copied().unwrap_or(0.0);
             (Damping::Modal(ratios), first)
         }

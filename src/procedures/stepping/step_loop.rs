@@ -15,9 +15,9 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{AxisReport, Keep, StepReport};
 use psd_physics::integrator::state::State;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::matrix::Vector;
-use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::{InspectTrigger, Mode, Stepping};
 use psd_rig::Reading;
@@ -108,7 +108,7 @@ pub(crate) fn run<S: Stepped>(
             time_scale,
             steps.time_step,
         )),
-        Mode::StepAndPause => None,
+        Mode::RampAndHold => None,
     };
     let keeps_steps = session.keep != Keep::Results;
     stepped.sum_up();

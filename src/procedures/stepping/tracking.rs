@@ -4,9 +4,9 @@
 
 use crate::procedures::facts::Delay;
 use crate::run::session::Session;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
 use psd_plan::formula::NoResults;
 use psd_plan::record::{EventKind, NamedResult};
@@ -269,8 +269,8 @@ pub(crate) fn delay(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
         _ if lag <= 0.0 => 0.0,
         Mode::Continuous { time_scale } => lag / time_scale,
         // The rig settles into its band first.
-        Mode::StepAndPause if plan.rig.settle.band > 0.0 => 0.0,
-        Mode::StepAndPause => {
+        Mode::RampAndHold if plan.rig.settle.band > 0.0 => 0.0,
+        Mode::RampAndHold => {
             let left = (-stepping.pause.constant().unwrap_or(0.0) / lag).exp();
             if left < 1.0 {
                 time_step * left / (1.0 - left)

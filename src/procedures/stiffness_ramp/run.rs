@@ -29,7 +29,6 @@ pub(crate) fn perform(
 ) -> Performed {
     let mut ramp = Ramp {
         steps: Vec::new(),
-        starts: Vec::new(),
         before: Vec::new(),
         holds: Vec::new(),
         arriving: Vec::new(),
@@ -48,7 +47,7 @@ pub(crate) fn perform(
     }
     let noise = Some(instruments.errors(0).noise).filter(|noise| *noise > 0.0);
     let asked = plan.relaxation.map(|asked| asked.model);
-    let start = ramp.starts.first().copied().unwrap_or_default();
+    let start = ramp.before.first().map(point).unwrap_or_default();
     let evaluation = hold::evaluate_dwells(
         &ramp.arriving,
         start,
@@ -59,13 +58,10 @@ pub(crate) fn perform(
     for text in evaluation.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
-    let (before, readings) = (
-        ramp.before,
-        Readings {
-            starts: ramp.starts,
-            steps: ramp.steps,
-        },
-    );
+    let readings = Readings {
+        starts: ramp.before.iter().map(point).collect(),
+        steps: ramp.steps,
+    };
     let mut results = results(&readings.direct(plan, declared.force), &fits);
     if session.keep == Keep::Everything {
         super::uncertainty::propagate(
@@ -90,7 +86,7 @@ pub(crate) fn perform(
         evaluation.reached.map(Box::new),
     );
     let history = StiffnessRampHistory {
-        before,
+        before: ramp.before,
         steps: readings.steps,
         fit,
         bilinear,
@@ -127,8 +123,6 @@ struct Fits {
 struct Ramp {
     steps: Vec<RampStep>,
     /// The reading before the first increment of each repeat.
-    starts: Vec<Point>,
-    /// The same as rows of the table.
     before: Vec<RampStep>,
     /// Dwells of the first repeat, if they are recorded.
     holds: Vec<Hold>,
@@ -176,13 +170,9 @@ impl Ramp {
             let start = session.read()?;
             self.last_reading = session.guard.time();
             let asked = plan.relaxation.filter(|_| repeat == 0);
-            self.starts.push(start);
-            self.before.push(before_moving(
-                self.steps.len() as u64,
-                home,
-                start,
-                self.last_reading,
-            ));
+            let reading = DwellReadings::single(start, self.last_reading);
+            self.before
+                .push(row(self.steps.len() as u64, home, &reading));
             let mut before = None;
             let outwards = displacements.iter().map(|command| (*command, false));
             let return_steps = displacements
@@ -234,50 +224,36 @@ impl Ramp {
             .transpose()?;
         // A hold that is read includes the pause.
         let pause = if watched.is_some() { 0.0 } else { manner.pause };
-        let DwellReadings {
-            displacement,
-            restoring_force,
-            force_scatter,
-            relaxation,
-            wall_time,
-            broken,
-        } = DwellReadings::take(&settled, broken, pause, manner.samples, session)?;
-        let step = self.steps.len() as u64 + 1;
+        let dwell = DwellReadings::take(&settled, broken, pause, manner.samples, session)?;
+        let read = row(self.steps.len() as u64 + 1, command, &dwell);
         if let Some(watched) = watched {
             let [waited_for, moved_for, settled_for] =
                 hold::parts(self.last_reading, moved, settled.time);
-            let dwell = Hold {
-                step,
-                displacement,
+            let hold = Hold {
+                step: read.step,
+                displacement: read.displacement,
                 waited_for,
                 moved_for,
                 settled_for,
                 readings: watched.readings.clone(),
             };
-            let from = before.or(self.starts.last().copied()).unwrap_or_default();
+            let from = before.or(self.before.last().map(point)).unwrap_or_default();
             let resolution = session.guard.declared_noise().resolution;
-            self.holds.push(dwell.clone());
+            self.holds.push(hold.clone());
             self.arriving
-                .push(Arriving::new(dwell, &watched, from, resolution));
+                .push(Arriving::new(hold, &watched, from, resolution));
             self.last_reading = watched.last;
         }
         self.steps.push(RampStep {
-            step,
-            wall_time,
-            command,
-            displacement,
-            restoring_force,
-            force_scatter,
-            relaxation,
-            tangent_stiffness: before
-                .and_then(|before| secant(before, (displacement, restoring_force))),
+            tangent_stiffness: before.and_then(|before| secant(before, point(&read))),
             returning,
+            ..read
         });
-        if let Some(stop) = broken {
+        if let Some(stop) = dwell.broken {
             return Err(stop);
         }
-        session.measured(step, wall_time, (displacement, restoring_force))?;
-        Ok((displacement, restoring_force))
+        session.measured(read.step, read.wall_time, point(&read))?;
+        Ok(point(&read))
     }
 }
 
@@ -334,21 +310,16 @@ fn fits(steps: &[RampStep], plan: &StiffnessRamp, stated: StatedVariance) -> Fit
     }
 }
 
-/// The reading before the first increment of a repeat, after so many steps.
-const fn before_moving(
-    step: u64,
-    command: f64,
-    (displacement, restoring_force): Point,
-    wall_time: f64,
-) -> RampStep {
+/// A row of the table, without a step before it.
+const fn row(step: u64, command: f64, read: &DwellReadings) -> RampStep {
     RampStep {
         step,
-        wall_time,
+        wall_time: read.wall_time,
         command,
-        displacement,
-        restoring_force,
-        force_scatter: 0.0,
-        relaxation: 0.0,
+        displacement: read.displacement,
+        restoring_force: read.restoring_force,
+        force_scatter: read.force_scatter,
+        relaxation: read.relaxation,
         tangent_stiffness: None,
         returning: false,
     }

@@ -22,7 +22,7 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     );
     if let (true, Some((_, entry))) = (of_frame, checker.field(block, STIFFNESS.name)) {
         let frame = tested.and_then(|tested| frame::frame(checker, tested));
-        let help = if frame.is_some_and(|frame| !frame.elements.is_empty()) {
+        let help = if frame.is_some_and(|frame| frame.has_elements()) {
             "remove it: the elements of the frame have stiffnesses"
         } else {
             "remove it: the storeys of the frame have stiffnesses"

@@ -40,7 +40,7 @@ pub(crate) fn leaves(unload: &Unload, specimens: &[Option<Specimen>]) -> Leaves<
     let specimen = specimens.get(unload.specimen).and_then(Option::as_ref);
     let frame = specimen.and_then(|specimen| specimen.frame.as_ref());
     let ends = match frame {
-        Some(frame) if !frame.elements.is_empty() => {
+        Some(frame) if frame.has_elements() => {
             "unloads the tested elements alone: the computed structure is not in balance with them"
         }
         Some(frame) if frame.computes_p_delta() => {

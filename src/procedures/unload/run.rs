@@ -11,8 +11,9 @@ use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use psd_physics::statistics::samples::peak;
+use psd_physics::structure::assemblies::on_the_rig;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::on_the_rig;
 use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::record::{
@@ -45,7 +46,7 @@ pub(crate) fn perform(
     let rest = outcome.as_ref().ok();
     let (of, results) = match plan.stiffness {
         Some(_) => (Unloaded::OneAxis, of_farthest(rest)),
-        None if has_elements(whole) => (Unloaded::Elements, element_results(rest)),
+        None if whole.tests_elements() => (Unloaded::Elements, element_results(rest)),
         None => (Unloaded::Floors, frame_results(rest)),
     };
     if of == Unloaded::OneAxis && !steps.is_empty() {
@@ -59,14 +60,9 @@ pub(crate) fn perform(
     }
 }
 
-fn has_elements(whole: &Plan) -> bool {
-    let frame = whole.frame_on_the_rig();
-    frame.is_some_and(|frame| !frame.elements.is_empty())
-}
-
 /// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         let elements = frame.elements.iter();
         let tested = on_the_rig(frame).map(|(element, _)| element.stiffness);
         return Ok(Unloading::of_elements(
@@ -216,17 +212,17 @@ pub(crate) fn to_rest(
     let secants = vec![None; at.force.len()];
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.floor_noise();
-    let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
+    let rounding = ROUNDING * f64::EPSILON * peak(&at.displacement);
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let by_readings = within.is_none();
     let within = within.unwrap_or_else(|| {
         detectable
-            .max(SMALL * largest(&at.force))
+            .max(SMALL * peak(&at.force))
             .max(f64::MIN_POSITIVE)
     });
     let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
     for step in before + 1..=before + MOST_TARGETS {
-        if largest(&at.force) <= within {
+        if peak(&at.force) <= within {
             return Ok(rest(at));
         }
         // Another reading has another error.
@@ -259,7 +255,7 @@ pub(crate) fn to_rest(
             break;
         }
     }
-    if largest(&at.force) > within {
+    if peak(&at.force) > within {
         let (force, wanted) = (
             rest(at.clone()).largest().1,
             readable(within, Dimension::FORCE),
@@ -306,11 +302,4 @@ fn rest(reading: Reading) -> Rest {
         force: reading.force,
         ..Rest::default()
     }
-}
-
-/// Peak absolute value.
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |largest, value| largest.max(value.abs()))
 }

@@ -35,7 +35,7 @@ const GREY: Colour = (110, 110, 110);
 /// The drawing of a frame of storeys, or of a frame of matrices with elements.
 pub(crate) fn svg(frame: &Frame) -> String {
     let storeys = drawn_storeys(frame);
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         return elements(frame, &storeys);
     }
     #[expect(clippy::cast_precision_loss, reason = "a drawing has a few storeys")]
@@ -174,7 +174,7 @@ pub(crate) fn description(frame: &Frame) -> String {
             axis.unwrap_or_default()
         )
     };
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         let elements = drawn.iter().zip(&frame.elements).map(|(drawn, element)| {
             let [from, to] = element.ends.map(|end| end.map_or(0, |end| end + 1));
             format!("{}; from {from} to {to}", described(drawn))

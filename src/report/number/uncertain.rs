@@ -2,8 +2,7 @@
 //! strings.
 
 use super::{join_typeset, text, without_sign_of_zero};
-use psd_plan::procedures::stiffness_ramp::block::R_SQUARED;
-use psd_plan::schema::printed_unit;
+use psd_plan::schema::{Printed, printed, printed_unit};
 use psd_plan::uncertainty::MeasurementUncertainty;
 use psd_text::units::Dimension;
 use psd_text::units::display::{digits, is_rounding, minus, significant, typeset, unit};
@@ -29,15 +28,14 @@ pub(in crate::report) fn parts(
     parts_in(&unit, factor, value, known, dimension)
 }
 
-/// The same for a result: R² to its nines, a fraction in percent.
+/// The same for a result: a number near 1 to its nines, a fraction in percent.
 pub(in crate::report) fn parts_of_result(
     name: &str,
     value: f64,
     known: Option<MeasurementUncertainty>,
     dimension: Dimension,
 ) -> Parts {
-    // The number of digits of R² depends on the number of nines.
-    if name == R_SQUARED.name {
+    if printed(name) == Printed::NearOne {
         return Parts {
             value: format!("{value:.6}"),
             standard: None,

@@ -2,11 +2,11 @@
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
 use crate::report::number::percent;
+use psd_physics::structure::assemblies::{Assemblies, on_the_rig};
 use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
-use psd_physics::structure::substructures::{Assemblies, on_the_rig};
 use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{
@@ -65,7 +65,9 @@ pub fn substructures(frame: &Frame) -> Option<String> {
         }
     };
     let computed = assemblies.computed();
-    let matrix = (!frame.elements.is_empty()).then(|| "the stiffness matrix".to_owned());
+    let matrix = frame
+        .has_elements()
+        .then(|| "the stiffness matrix".to_owned());
     let computed = (!computed.is_empty()).then(|| storeys(&computed));
     let computed: Vec<String> = matrix.into_iter().chain(computed).collect();
     Some(if computed.is_empty() {
@@ -155,10 +157,10 @@ pub fn measured(what: &str, frame: Option<&Frame>) -> String {
 pub fn assumed(frame: &Frame) -> String {
     let has = |is: fn(&Part) -> bool| frame.members().any(|member| is(&member.part));
     let word = frame.word_for_a_member();
-    let interface = if frame.elements.is_empty() {
-        "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen."
-    } else {
+    let interface = if frame.has_elements() {
         "An element transmits one force alone: no rotation and no moment is imposed on a specimen. The stiffness matrix is computed: it is stated and was not measured."
+    } else {
+        "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen."
     };
     let assumed = [
         (true, interface.to_owned()),

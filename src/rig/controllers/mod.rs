@@ -1,23 +1,61 @@
-//! Protocol drivers, one folder per controller. A [`Device`] turns SI into bytes and back. It knows no settling, limit,
-//! median or run log: those are in `rig/real` and `rig/guard`.
+//! Protocol drivers, one folder per controller: `codec` turns bytes into meaning, `driver` leads the conversation. A [`Device`] turns SI
+//! into bytes and back. It knows no settling, limit, median or run log: those are in `rig/real` and `rig/guard`.
 //!
-//! A new controller is a folder here, a line of the list below, an arm of [`open`], and its arms in `replies`.
-
-pub mod grbl;
-pub mod hx711;
-pub mod indicator;
-pub mod instron;
-pub mod mark10;
-pub mod modbus;
-pub mod native;
-pub mod nees;
-pub mod scpi;
-#[cfg(test)]
-mod tests;
+//! A new controller is a folder here with its entry in the list below, an arm of [`open`], and its arms in `replies`.
 
 mod device;
 mod line;
 mod replies;
+#[cfg(test)]
+mod tests;
+
+/// Grbl 1.1 stepper frames.
+pub mod grbl {
+    pub mod codec;
+    pub mod driver;
+}
+/// Load cells on an HX711 converter. They command no motion.
+pub mod hx711 {
+    pub mod codec;
+    pub mod driver;
+}
+/// Load cells on a weighing indicator. They command no motion.
+pub mod indicator {
+    pub mod codec;
+    pub mod driver;
+}
+/// Instron 8800-style consoles.
+pub mod instron {
+    pub mod codec;
+    pub mod driver;
+}
+/// Mark-10 test frames and force gauges.
+pub mod mark10 {
+    pub mod codec;
+    pub mod driver;
+    pub mod load_cell;
+}
+/// Modbus RTU drives. `word_order` allows a target.
+pub mod modbus {
+    pub mod codec;
+    pub mod driver;
+    mod word_order;
+}
+/// psd's own line protocol.
+pub mod native {
+    pub mod codec;
+    pub mod driver;
+}
+/// NEES sites.
+pub mod nees {
+    pub mod codec;
+    pub mod driver;
+}
+/// SCPI transducers. They command no motion.
+pub mod scpi {
+    pub mod codec;
+    pub mod driver;
+}
 
 use crate::StopRequest;
 use crate::transport::{Clock, Port};

@@ -154,50 +154,46 @@ fn at(line: &Line, reason: impl Into<String>) -> Contradiction {
 /// Whether psd would write exactly the same object, with the same fields. The rig takes it.
 fn is_ours(line: &Line, rig: &mut PlansRig<'_>) -> Result<(), Contradiction> {
     match line.kind {
-        EntryKind::Header => written::<Header>(line, &["format"]).map(drop),
-        EntryKind::Plan => written::<PlanBody>(line, &[]).map(drop),
+        EntryKind::Header => _ = written::<Header>(line, &["format"])?,
+        EntryKind::Plan => _ = written::<PlanBody>(line, &[])?,
         EntryKind::Rig => {
             let body: RigBody = written(line, &[])?;
             rig.take(line, |rig| rig.answered(body));
-            Ok(())
         }
         EntryKind::Intent => {
             let body: IntentBody = written(line, &[])?;
             rig.take(line, |rig| rig.sent(&body));
-            Ok(())
         }
         EntryKind::Sample => {
             let body: SampleBody = written(line, &[])?;
             rig.take(line, |rig| rig.read(&body));
-            Ok(())
         }
         EntryKind::Stroke => {
             rig.in_motion = false;
-            written::<StrokeBody>(line, &[]).map(drop)
+            written::<StrokeBody>(line, &[])?;
         }
-        EntryKind::Step => written::<StepBody>(line, &[]).map(drop),
-        EntryKind::Digest => written::<DigestBody>(line, &[]).map(drop),
-        EntryKind::Operator => written::<OperatorEntry>(line, &[]).map(drop),
-        EntryKind::Event => written::<Event>(line, &[]).map(drop),
+        EntryKind::Step => _ = written::<StepBody>(line, &[])?,
+        EntryKind::Digest => _ = written::<DigestBody>(line, &[])?,
+        EntryKind::Operator => _ = written::<OperatorEntry>(line, &[])?,
+        EntryKind::Event => _ = written::<Event>(line, &[])?,
         EntryKind::Fault => {
             let body: FaultBody = written(line, &[])?;
             rig.take(line, |rig| rig.failed(&body));
-            Ok(())
         }
         EntryKind::Held => {
-            let ours = written::<HeldBody>(line, &[]).map(drop);
             let is_real = rig.is_real();
             rig.take(line, |_| {
                 without_bytes(is_real, "a virtual rig has no final hold")
             });
-            ours
+            written::<HeldBody>(line, &[])?;
         }
-        EntryKind::LineStatistics => written::<LineStatistics>(line, &[]).map(drop),
-        EntryKind::Recover => written::<RecoverBody>(line, &[]).map(drop),
-        EntryKind::Amend => written::<AmendBody>(line, &[]).map(drop),
-        EntryKind::Resume => written::<ResumeBody>(line, &[]).map(drop),
-        EntryKind::End => written::<EndBody>(line, &["count", "head"]).map(drop),
+        EntryKind::LineStatistics => _ = written::<LineStatistics>(line, &[])?,
+        EntryKind::Recover => _ = written::<RecoverBody>(line, &[])?,
+        EntryKind::Amend => _ = written::<AmendBody>(line, &[])?,
+        EntryKind::Resume => _ = written::<ResumeBody>(line, &[])?,
+        EntryKind::End => _ = written::<EndBody>(line, &["count", "head"])?,
     }
+    Ok(())
 }
 
 /// The body of an entry; `own` are the fields of the run log itself.

@@ -3,10 +3,9 @@
 
 use std::rc::Rc;
 
-use super::continuous_move::ContinuousMove;
 use super::entry::{Call, IntentBody, StrokeBody, TargetStatus};
 use super::entry_of::{append_sample, bits, in_log_time, intent, target_text};
-use super::recorded_rig::RecordedRig;
+use super::recorded_rig::{ContinuousMove, RecordedRig};
 use super::state::ended;
 use psd_physics::tracking::trajectory::Path;
 use psd_rig::journal::EntryKind;

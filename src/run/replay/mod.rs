@@ -8,7 +8,6 @@
 
 mod consistency;
 mod continuous_motion;
-mod continuous_move;
 mod entry;
 mod entry_of;
 mod in_force;

@@ -4,7 +4,6 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::continuous_move::ContinuousMove;
 use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
 use super::entry_of::{
     append_sample, in_log_time, intent, same_bits, target_text, to_log_time, unknown_rig,
@@ -20,6 +19,13 @@ use psd_rig::{
     DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
     OWN_SPEED, Reading, Rig, RigFault, UnfinishedStep, WholeSteps,
 };
+
+/// A move with readings during the motion, as requested.
+pub(super) enum ContinuousMove<'a> {
+    /// \[m\], \[m/s\]
+    Stroke(&'a [f64], f64),
+    Paths(&'a [Path]),
+}
 
 /// A rig whose answers are all logged.
 pub struct RecordedRig<'rig> {
@@ -307,9 +313,10 @@ impl WholeSteps for RecordedRig<'_> {
             .add_to_digest("a target", |digest| digest.target(&target))
             .map_err(ended(false))?;
         let rig = self.rig().map_err(ended(false))?;
-        if let Some(rig) = rig.at_once() {
-            rig.step(targets, speed, pause, reading)?;
-        }
+        let rig = rig
+            .at_once()
+            .expect("a recorded rig does whole steps only if its rig does");
+        rig.step(targets, speed, pause, reading)?;
         to_log_time(reading, self.offset.unwrap_or(0.0))
             .or_else(|fault| self.failed(Call::Read, fault))
             .and_then(|()| self.log_reading(reading, None))

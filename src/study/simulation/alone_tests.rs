@@ -1,7 +1,7 @@
 //! Runs of a study, one by one: each has the results of the run that is recorded, to the last bit, and a step allocates nothing.
 
 use super::Simulation;
-use super::alone::simulate;
+use super::simulated_alone as simulate;
 use super::tests::folder;
 use crate::check::{Options, check};
 use crate::run::{Keep, Unwatched, run_with};

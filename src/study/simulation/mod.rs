@@ -1,7 +1,6 @@
 //! The runs of a study. In: a parsed plan and a study of it. Out: the row of run i: its inputs, results and outcomes, which depend on the
 //! seed and i alone. It writes no file.
 
-mod alone;
 #[cfg(test)]
 mod alone_tests;
 mod batches;
@@ -18,10 +17,13 @@ use super::definition::Definition;
 use crate::check::ParsedPlan;
 use crate::check::binding::{Binder, BoundInputs};
 use crate::procedures::impact::batched::Leaves;
+use crate::run::{Keep, Unwatched, run_with};
 use batches::Batch;
 pub use batches::LeftBatches;
 use psd_physics::impact::summary::Wanted;
+use psd_plan::record::Record;
 use psd_plan::{DecisionRule, Plan};
+use psd_rig::virtual_rig;
 use psd_text::diagnostic::Diagnostic;
 use readout::{Kept, Readout};
 
@@ -195,7 +197,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn alone(&self, plan: &Plan) -> Kept {
-        self.readout.read(plan, &alone::simulate(plan))
+        self.readout.read(plan, &simulated_alone(plan))
     }
 }
 
@@ -220,4 +222,11 @@ fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> StudyRow {
         outcomes: kept.outcomes,
         reason: kept.reason,
     }
+}
+
+/// Runs a plan with the values of one run as `psd run` does on its virtual rig, an ideal one if it names none. The results are the same to
+/// the last bit. It keeps no run log and evaluates no uncertainty: the scatter of the study takes its place.
+fn simulated_alone(plan: &Plan) -> Record {
+    let mut rig = virtual_rig(plan);
+    run_with(plan, rig.as_mut(), &mut Unwatched, Keep::Results)
 }

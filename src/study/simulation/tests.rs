@@ -128,7 +128,7 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
         let Some(impact) = batches::impact(&plan) else {
             continue;
         };
-        let alone = alone::simulate(&plan);
+        let alone = simulated_alone(&plan);
         let mut batch = Batch::default();
         batch.add(0, impact);
         let (_, found) = batch.run(&plan, Wanted::ALL).next().unwrap();
@@ -201,7 +201,7 @@ fn a_run_is_reproduced_by_its_settings() {
             })
             .collect();
         let (_, plan) = checked(&text, &settings);
-        let record = alone::simulate(&plan);
+        let record = simulated_alone(&plan);
         let kept = simulation.readout.read(&plan, &record);
         let values = |results: &[Option<f64>]| -> Vec<Option<u64>> {
             results.iter().map(|it| it.map(f64::to_bits)).collect()

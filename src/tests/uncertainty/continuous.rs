@@ -77,7 +77,7 @@ fn plan(case: Case) -> Plan {
             time_scale: TIME_SCALE,
         }
     } else {
-        Mode::StepAndPause
+        Mode::RampAndHold
     };
     let integrator = if case.continuous {
         Integrator::Explicit

@@ -440,7 +440,7 @@ fn plan() -> Plan {
                     integrator: Integrator::Tangent,
                     allow_unstable: false,
                     i_modification: false,
-                    mode: Mode::StepAndPause,
+                    mode: Mode::RampAndHold,
                     time_step: constant(TIME_STEP),
                     pause: constant(0.5),
                     max_tangent_ratio: constant(1.5),

@@ -6,7 +6,7 @@ use psd_plan::{Element, Frame};
 
 /// A row for each floor with its axis, and one for each storey below it: `║` is on the rig, `┆` is computed.
 pub fn drawing(frame: &Frame) -> Vec<Vec<String>> {
-    if !frame.elements.is_empty() {
+    if frame.has_elements() {
         return elements(frame);
     }
     let storeys = drawn_storeys(frame).into_iter().map(|drawn| {

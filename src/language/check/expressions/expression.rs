@@ -601,7 +601,7 @@ impl<'a> Checker<'a> {
         }
         let specimen = self.tested(block)?;
         let frame = frame::frame(self, specimen)?;
-        Some(if result.of_each_member && !frame.elements.is_empty() {
+        Some(if result.of_each_member && frame.has_elements() {
             frame.elements.len()
         } else {
             frame.degrees_of_freedom()

@@ -728,7 +728,7 @@ impl<'a> Checker<'a> {
     fn tests_elements(&mut self, block: usize) -> Option<bool> {
         let specimen = self.tested(block)?;
         let frame = frame::frame(self, specimen)?;
-        Some(!frame.elements.is_empty())
+        Some(frame.has_elements())
     }
 
     /// Checks that every result that a value reads may be read in this context.

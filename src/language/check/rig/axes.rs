@@ -7,7 +7,7 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
 use crate::check::wording::axes_of;
 use crate::codes::E615;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
 use psd_text::count::counted_in_words;
@@ -373,7 +373,7 @@ struct AxisOfAnotherFrame {
 
 /// The storeys or elements that axes name are the tested ones, in their order.
 fn check_members(checker: &mut Checker, frame: &Frame, axes: &[AxisPlan], block: usize) {
-    let has_elements = !frame.elements.is_empty();
+    let has_elements = frame.has_elements();
     let word = frame.word_for_a_member();
     let parts: Vec<Part> = if frame.is_matrix_on_the_rig() {
         vec![Part::TESTED; frame.degrees_of_freedom()]

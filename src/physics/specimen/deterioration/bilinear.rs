@@ -1,47 +1,8 @@
 //! A bilinear spring with cyclic deterioration. In: a displacement. Out: the force there, exact for a move of any length; without
 //! deterioration bit-identical to the bilinear spring.
 
-use super::{
-    Degradation, Deterioration, ENERGY_CAPACITY, EXPONENT, FurtherCapacities, RESIDUAL_STRENGTH,
-    UNLOADING_CAPACITY,
-};
-use crate::specimen::declaration::{Declaration, POST_YIELD_RATIO, STIFFNESS, YIELD_FORCE};
-use crate::specimen::{Behaviour, BilinearCurve, RestoringForce};
-
-/// Of both bilinear springs: it deteriorates if a capacity is stated.
-pub(in crate::specimen) static DECLARATION: Declaration = Declaration {
-    word: "bilinear",
-    parameters: &[
-        STIFFNESS,
-        YIELD_FORCE,
-        POST_YIELD_RATIO,
-        ENERGY_CAPACITY,
-        UNLOADING_CAPACITY,
-        EXPONENT,
-        RESIDUAL_STRENGTH,
-    ],
-    about: "elastic–plastic with kinematic hardening; deteriorates if a capacity is given",
-    model: |stated| {
-        let stiffness = stated.number(STIFFNESS)?;
-        let yield_force = stated.number(YIELD_FORCE)?;
-        let post_yield_ratio = stated.number(POST_YIELD_RATIO)?;
-        let rule = Deterioration::of_numbers(stated, &FurtherCapacities::default())?;
-        Some(match rule {
-            None => Behaviour::Bilinear {
-                stiffness,
-                yield_force,
-                post_yield_ratio,
-            },
-            Some(deterioration) => Behaviour::DeterioratingBilinear {
-                stiffness,
-                yield_force,
-                post_yield_ratio,
-                deterioration,
-            },
-        })
-    },
-    numbers: |_| None,
-};
+use super::{Degradation, Deterioration};
+use crate::specimen::{BilinearCurve, RestoringForce};
 
 /// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of
 /// deterioration of Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of

@@ -15,41 +15,6 @@ pub mod pinching;
 #[cfg(test)]
 mod pinching_tests;
 
-use super::declaration::{Parameter, Stated, Unit};
-
-const ENERGY_CAPACITY: Parameter = Parameter::new(
-    "energy_capacity",
-    Unit::ONE,
-    "γ: energy at which all strength is lost, over F_y x_y",
-)
-.above_zero()
-.default_in_words("no loss of strength");
-
-const UNLOADING_CAPACITY: Parameter = Parameter::new(
-    "unloading_capacity",
-    Unit::ONE,
-    "γ of the unloading stiffness",
-)
-.above_zero()
-.default_in_words("no loss");
-
-const EXPONENT: Parameter = Parameter::new(
-    "deterioration_exponent",
-    Unit::ONE,
-    "exponent c of the deterioration in each mode",
-)
-.or(1.0, "")
-.within(0.5, 4.0)
-.advanced();
-
-const RESIDUAL_STRENGTH: Parameter = Parameter::new(
-    "residual_strength",
-    Unit::ONE,
-    "strength that always remains, over the initial strength",
-)
-.or(0.05, "")
-.within(0.01, 1.0);
-
 /// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite if the mode is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
@@ -61,40 +26,6 @@ pub struct Deterioration {
     pub exponent: f64,
     /// Strength that is never lost, over the first one.
     pub residual: f64,
-}
-
-/// Capacities that not every model has.
-#[derive(Default)]
-struct FurtherCapacities {
-    capping: Option<f64>,
-    reloading: Option<f64>,
-}
-
-impl Deterioration {
-    /// The rule of these numbers: Some(None) if no capacity is stated, None without a number that a rule requires.
-    #[expect(
-        clippy::option_option,
-        reason = "no deterioration and a number that is missing are different things here"
-    )]
-    fn of_numbers(stated: Stated<'_>, further: &FurtherCapacities) -> Option<Option<Self>> {
-        let all = [
-            stated.number(ENERGY_CAPACITY),
-            further.capping,
-            stated.number(UNLOADING_CAPACITY),
-            further.reloading,
-        ];
-        let [strength, capping, unloading, reloading] =
-            all.map(|capacity| capacity.unwrap_or(f64::INFINITY));
-        let rule = Self {
-            strength,
-            capping,
-            unloading,
-            reloading,
-            exponent: stated.number(EXPONENT)?,
-            residual: stated.number(RESIDUAL_STRENGTH)?,
-        };
-        Some(all.iter().any(Option::is_some).then_some(rule))
-    }
 }
 
 /// Deterioration of a hysteresis so far; none if no capacity is stated.

@@ -21,7 +21,8 @@ pub const R_SQUARED: ResultKind = ResultKind::new(
     "r_squared",
     Dimension::NUMBER,
     "coefficient of determination of the fit",
-);
+)
+.near_one();
 
 pub const DAMPING_RATIO: ResultKind = ResultKind::measured(
     "damping_ratio",

@@ -91,7 +91,8 @@ pub const R_SQUARED: ResultKind = ResultKind::new(
     "r_squared",
     Dimension::NUMBER,
     "coefficient of determination of the fit",
-);
+)
+.near_one();
 
 pub const MAX_FORCE: ResultKind = ResultKind::measured(
     "max_force",

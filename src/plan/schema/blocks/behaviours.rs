@@ -1,12 +1,8 @@
-//! The restoring-force models of a specimen: the variants of `behaviour`. A model of numbers has its entry from its declaration in
-//! `physics::specimen`; the others are here.
+//! The restoring-force models of a specimen: the variants of `behaviour`.
 
-use crate::schema::types::{self, Field, FieldType, Range, Variant};
-use psd_physics::specimen::declaration::{self, Parameter, Presence, Unit};
-use psd_physics::specimen::{Declaration, MODELS};
-use psd_text::units::{Dimension, Exponent};
-
-pub const STIFFNESS: Field = entry(&declaration::STIFFNESS);
+use crate::schema::{Field, Variant};
+use psd_physics::specimen::numbers;
+use psd_text::units::Dimension;
 
 /// The names of the arguments of models with other parameters than numbers.
 pub mod argument {
@@ -45,6 +41,90 @@ pub mod argument {
     pub const MIDSPAN_MASS: &str = "midspan_mass";
     pub const CORNER_MASS: &str = "corner_mass";
 }
+
+/// K
+pub const STIFFNESS: Field = Field::quantity(
+    numbers::STIFFNESS,
+    Dimension::STIFFNESS,
+    "initial stiffness",
+)
+.required("stiffness: 300 kN/m")
+.above_zero();
+
+/// `F_y`
+const YIELD_FORCE: Field = Field::quantity(
+    numbers::YIELD_FORCE,
+    Dimension::FORCE,
+    "force at first yield",
+)
+.required("yield_force: 4 kN")
+.above_zero();
+
+/// `K_p/K`
+const POST_YIELD_RATIO: Field = Field::quantity(
+    numbers::POST_YIELD_RATIO,
+    Dimension::NUMBER,
+    "post-yield stiffness over initial stiffness",
+)
+.or(0.0, "")
+.within(0.0, 1.0);
+
+const ENERGY_CAPACITY: Field = Field::quantity(
+    numbers::ENERGY_CAPACITY,
+    Dimension::NUMBER,
+    "γ: energy at which all strength is lost, over F_y x_y",
+)
+.above_zero()
+.default_in_words("no loss of strength");
+
+const UNLOADING_CAPACITY: Field = Field::quantity(
+    numbers::UNLOADING_CAPACITY,
+    Dimension::NUMBER,
+    "γ of the unloading stiffness",
+)
+.above_zero()
+.default_in_words("no loss");
+
+const DETERIORATION_EXPONENT: Field = Field::quantity(
+    numbers::DETERIORATION_EXPONENT,
+    Dimension::NUMBER,
+    "exponent c of the deterioration in each mode",
+)
+.or(1.0, "")
+.within(0.5, 4.0)
+.advanced();
+
+const RESIDUAL_STRENGTH: Field = Field::quantity(
+    numbers::RESIDUAL_STRENGTH,
+    Dimension::NUMBER,
+    "strength that always remains, over the initial strength",
+)
+.or(0.05, "")
+.within(0.01, 1.0);
+
+pub const CAPPING_DISPLACEMENT: Field = Field::quantity(
+    numbers::CAPPING_DISPLACEMENT,
+    Dimension::LENGTH,
+    "x_c, at which strength begins to fall",
+)
+.above_zero()
+.default_in_words("never");
+
+pub const CAPPING_SLOPE: Field = Field::quantity(
+    numbers::CAPPING_SLOPE,
+    Dimension::NUMBER,
+    "slope of the falling branch over the initial stiffness",
+)
+.or(0.1, "")
+.above_zero_up_to(10.0);
+
+pub const CAPPING_CAPACITY: Field = Field::quantity(
+    numbers::CAPPING_CAPACITY,
+    Dimension::NUMBER,
+    "γ of the falling branch, which moves inward",
+)
+.above_zero()
+.default_in_words("no loss");
 
 const YOUNGS_MODULUS: Field = Field::quantity(
     argument::YOUNGS_MODULUS,
@@ -120,8 +200,90 @@ const LOADS: &[Variant] = &[
     ),
 ];
 
-/// The models with other parameters than numbers.
-const OF_OTHER_PARAMETERS: &[Variant] = &[
+/// The models.
+pub const BEHAVIOURS: &[Variant] = &[
+    Variant::with("elastic", &[STIFFNESS], "linear spring"),
+    Variant::with(
+        "bilinear",
+        &[
+            STIFFNESS,
+            YIELD_FORCE,
+            POST_YIELD_RATIO,
+            ENERGY_CAPACITY,
+            UNLOADING_CAPACITY,
+            DETERIORATION_EXPONENT,
+            RESIDUAL_STRENGTH,
+        ],
+        "elastic–plastic with kinematic hardening; deteriorates if a capacity is given",
+    ),
+    Variant::with(
+        "bouc_wen",
+        &[
+            STIFFNESS,
+            YIELD_FORCE,
+            POST_YIELD_RATIO,
+            Field::quantity(numbers::SHARPNESS, Dimension::NUMBER, "sharpness of the yield transition").or(1.0, "").within(1.0, 100.0),
+            Field::quantity(numbers::BETA, Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β")
+                .or(0.5, "")
+                .within(0.5, 1.0),
+        ],
+        "smooth hysteresis of Bouc and Wen",
+    ),
+    Variant::with(
+        "pinching",
+        &[
+            STIFFNESS,
+            YIELD_FORCE,
+            POST_YIELD_RATIO,
+            Field::quantity(numbers::FORCE_FACTOR, Dimension::NUMBER, "κ_F: force at the break point over the force without pinching")
+                .or(0.25, "")
+                .within(0.0, 1.0),
+            Field::quantity(numbers::DISPLACEMENT_FACTOR, Dimension::NUMBER, "κ_D: 1 − break point over largest permanent displacement")
+                .or(0.5, "")
+                .within(0.0, 1.0),
+            Field::quantity(numbers::UNLOADING_EXPONENT, Dimension::NUMBER, "exponent a of the unloading stiffness K (x_y/x_max)^a")
+                .or(0.0, "")
+                .within(0.0, 1.0),
+            ENERGY_CAPACITY,
+            UNLOADING_CAPACITY,
+            Field::quantity(numbers::RELOADING_CAPACITY, Dimension::NUMBER, "γ of the reloading peak, which moves outward")
+                .above_zero()
+                .default_in_words("no loss"),
+            CAPPING_DISPLACEMENT,
+            CAPPING_SLOPE,
+            CAPPING_CAPACITY,
+            DETERIORATION_EXPONENT,
+            RESIDUAL_STRENGTH,
+        ],
+        "pinched, peak-oriented hysteresis (Ibarra, Medina and Krawinkler)",
+    ),
+    Variant::with(
+        "degrading",
+        &[
+            STIFFNESS,
+            Field::quantity(numbers::HALF_DISPLACEMENT, Dimension::LENGTH, "peak displacement at which half of the loss has occurred")
+                .required("half_displacement: 5 mm")
+                .above_zero(),
+            Field::quantity(numbers::RESIDUAL, Dimension::NUMBER, "stiffness that always remains, over the initial stiffness")
+                .or(0.0, "")
+                .within(0.0, 1.0),
+        ],
+        "stiffness falls with the peak displacement; unloads to the origin",
+    ),
+    Variant::with(
+        "bolted",
+        &[
+            STIFFNESS,
+            Field::quantity(numbers::BEARING_FORCE, Dimension::FORCE, "force at which a hole yields and elongates")
+                .required("bearing_force: 5 kN")
+                .above_zero(),
+            Field::quantity(numbers::CLEARANCE, Dimension::LENGTH, "clearance: displacement from centre to bearing")
+                .or(0.0, "mm")
+                .at_least_zero(),
+            Field::quantity(numbers::SLIP_FORCE, Dimension::FORCE, "friction of the clamped faces").or(0.0, "N").at_least_zero(),
+        ],
+        "bolted joint: friction, clearance, bearing, holes that elongate",
+    ),
     Variant::with(
         "multilinear",
         &[
@@ -254,92 +416,6 @@ const OF_OTHER_PARAMETERS: &[Variant] = &[
         "portal frame with fixed feet by plastic hinges: elastic up to the lowest collapse load",
     ),
 ];
-
-/// Every model: those of numbers first.
-pub const BEHAVIOURS: &[Variant] = &ALL;
-
-const ALL: [Variant; MODELS.len() + OF_OTHER_PARAMETERS.len()] = {
-    let mut all = [Variant::word("", ""); MODELS.len() + OF_OTHER_PARAMETERS.len()];
-    let (mut position, mut first) = (0, 0);
-    while position < MODELS.len() {
-        let Declaration {
-            word,
-            parameters,
-            about,
-            ..
-        } = MODELS[position];
-        let (_, arguments) = ENTRIES.split_at(first);
-        let (arguments, _) = arguments.split_at(parameters.len());
-        all[position] = Variant::with(word, arguments, about);
-        (position, first) = (position + 1, first + parameters.len());
-    }
-    let mut other = 0;
-    while other < OF_OTHER_PARAMETERS.len() {
-        all[position] = OF_OTHER_PARAMETERS[other];
-        (position, other) = (position + 1, other + 1);
-    }
-    all
-};
-
-/// The numbers of all models, one model after another.
-const ENTRIES: &[Field] = &{
-    let mut entries = [STIFFNESS; number_count()];
-    let (mut model, mut position) = (0, 0);
-    while model < MODELS.len() {
-        let mut number = 0;
-        while number < MODELS[model].parameters.len() {
-            entries[position] = entry(&MODELS[model].parameters[number]);
-            (position, number) = (position + 1, number + 1);
-        }
-        model += 1;
-    }
-    entries
-};
-
-const fn number_count() -> usize {
-    let (mut count, mut model) = (0, 0);
-    while model < MODELS.len() {
-        count += MODELS[model].parameters.len();
-        model += 1;
-    }
-    count
-}
-
-/// The entry of a number.
-const fn entry(parameter: &Parameter) -> Field {
-    let Unit {
-        metre,
-        kilogram,
-        second,
-    } = parameter.unit;
-    let dimension = Dimension {
-        length: Exponent::whole(metre),
-        mass: Exponent::whole(kilogram),
-        time: Exponent::whole(second),
-        ..Dimension::NUMBER
-    };
-    let (presence, example) = match parameter.presence {
-        Presence::Required(example) => (types::Presence::Required, example),
-        Presence::Default(number, unit) => (types::Presence::Default { number, unit }, ""),
-        Presence::Optional(words) if words.is_empty() => (types::Presence::Optional, ""),
-        Presence::Optional(words) => (types::Presence::DefaultInWords(words), ""),
-    };
-    Field {
-        presence,
-        example,
-        range: Range {
-            low: parameter.low,
-            above: parameter.above_low,
-            high: parameter.high,
-        },
-        advanced: parameter.advanced,
-        ..Field::of_type(
-            parameter.name,
-            FieldType::Quantity(dimension),
-            parameter.about,
-        )
-    }
-}
 
 /// The dimension of a number of a model.
 pub fn dimension(model: &str, argument: &str) -> Dimension {

@@ -104,7 +104,7 @@ impl ImpactUncertainty<'_> {
             force: step.restoring_force,
         });
         let (input, readings) = (&setting.input, readings.collect::<Vec<Reading>>());
-        let velocities = (self.plan.stepping.mode != Mode::StepAndPause).then(|| {
+        let velocities = (self.plan.stepping.mode != Mode::RampAndHold).then(|| {
             predicted_velocities(input, self.plan.until, setting.steps().count, &readings)
         });
         let motion = velocities.as_deref().map(|velocities| ContinuousMotion {

@@ -161,10 +161,10 @@ fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<
     };
     let is_measured = steps.frame.members().any(|member| member.damping > 0.0);
     if computed && is_measured && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
-        let members = if steps.frame.elements.is_empty() {
-            specimen::STOREYS.name
-        } else {
+        let members = if steps.frame.has_elements() {
             specimen::ELEMENTS.name
+        } else {
+            specimen::STOREYS.name
         };
         let fields = [frames::DAMPING_RATIO.name, members];
         warn_of_damping_twice(checker, block, steps.specimen, fields);

@@ -57,12 +57,12 @@ struct ContinuousUnderAxialLoad {
 /// The mode that a block names, otherwise `ramp_and_hold`.
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     let Some((entry, written)) = checker.field(block, methods::MODE.name) else {
-        return Some(Mode::StepAndPause);
+        return Some(Mode::RampAndHold);
     };
     let (context, at) = (checker.context_of(block, entry), written.value.span);
     let chosen = checker.choice(block, methods::MODE.name)?;
     if chosen.variant.name == "ramp_and_hold" {
-        return Some(Mode::StepAndPause);
+        return Some(Mode::RampAndHold);
     }
     let time_scale = checker.constant_argument(&chosen, methods::TIME_SCALE.name, context)?;
     if let Some(dialect) = checker

@@ -21,10 +21,10 @@ pub(crate) fn structure(plan: &Plan, frame: &Frame, body: &mut Vec<Block>) {
     if let Some([mass, stiffness]) = &frame.files {
         rows.push(("mass matrix", mass.clone()));
         rows.push(("stiffness matrix", stiffness.clone()));
-        let behaviour = if frame.elements.is_empty() {
-            ("virtual behaviour", "elastic, R = K·X")
-        } else {
+        let behaviour = if frame.has_elements() {
             ("stiffness matrix", "computed, beside the elements")
+        } else {
+            ("virtual behaviour", "elastic, R = K·X")
         };
         rows.push((behaviour.0, behaviour.1.to_owned()));
     }
@@ -38,17 +38,17 @@ pub(crate) fn structure(plan: &Plan, frame: &Frame, body: &mut Vec<Block>) {
     if is_hybrid {
         body.push(Block::Figure(Figure {
             number: 0,
-            caption: if frame.elements.is_empty() {
-                wording::STRUCTURE.into()
-            } else {
+            caption: if frame.has_elements() {
                 wording::STRUCTURE_OF_ELEMENTS.into()
+            } else {
+                wording::STRUCTURE.into()
             },
             description: structure::description(frame).into(),
             svg: structure::svg(frame),
         }));
     }
     if frame.storeys.is_empty() {
-        if !frame.elements.is_empty() {
+        if frame.has_elements() {
             body.push(elements(frame));
             body.push(Block::note(specimen_text::assumed(frame)));
         }

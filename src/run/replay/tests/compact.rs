@@ -113,7 +113,7 @@ fn long(steps: f64) -> Plan {
     let impact = Impact {
         duration: Constant(steps * 0.01),
         until: Until::Duration,
-        ..short(Mode::StepAndPause)
+        ..short(Mode::RampAndHold)
     };
     elastic_plan(300.0, vec![ProcedureKind::Impact(impact)])
 }
@@ -188,7 +188,7 @@ fn a_digest_has_a_thousand_steps_and_the_last_has_the_rest() {
 /// The run ends after every question whether to stop, of which each step has one.
 #[test]
 fn a_run_that_was_stopped_anywhere_is_stopped_there_again() {
-    for plan in [plan(), shaken(Mode::StepAndPause), escalating()] {
+    for plan in [plan(), shaken(Mode::RampAndHold), escalating()] {
         let mut stopped = 0;
         loop {
             let disk = PowerLoss::new();

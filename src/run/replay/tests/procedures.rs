@@ -96,7 +96,7 @@ pub(super) fn shaken(mode: Mode) -> Plan {
         stepping: Stepping {
             integrator: Integrator::Explicit,
             mode,
-            inspect: if mode == Mode::StepAndPause {
+            inspect: if mode == Mode::RampAndHold {
                 vec![InspectTrigger::Every(4)]
             } else {
                 Vec::new()
@@ -176,7 +176,7 @@ fn rest() -> Procedure {
 
 /// The lower storey under an axial load, of which `unload` takes the load off.
 pub(super) fn shaken_under_a_load() -> Plan {
-    let mut plan = shaken(Mode::StepAndPause);
+    let mut plan = shaken(Mode::RampAndHold);
     let frame = plan.specimens[0].frame.as_ref().unwrap();
     let lower = |storeys: &mut [Storey]| storeys[0].height = Some(3.0);
     plan.specimens[0].frame = Some(frame.with(lower));
@@ -204,7 +204,7 @@ pub(super) fn escalating() -> Plan {
         own: ProcedureId(0),
         impact: Impact {
             duration: Constant(0.03),
-            ..short(Mode::StepAndPause)
+            ..short(Mode::RampAndHold)
         },
         velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
         energies: None,
@@ -324,12 +324,12 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
         ),
         ("escalate", escalating()),
         ("drift", drifting()),
-        ("shake", shaken(Mode::StepAndPause)),
+        ("shake", shaken(Mode::RampAndHold)),
         (
             "shake with a computed storey, a scale and weights",
-            shaken_hybrid(Mode::StepAndPause),
+            shaken_hybrid(Mode::RampAndHold),
         ),
-        ("shake with elements", shaken_elements(Mode::StepAndPause)),
+        ("shake with elements", shaken_elements(Mode::RampAndHold)),
         ("shake under an axial load", shaken_under_a_load()),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("storey without a stop", struck_without_a_stop()),

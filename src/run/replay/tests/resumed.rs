@@ -109,7 +109,7 @@ fn each_replays_bit_identically_and_is_reported_at_the_same_times_without_a_reco
         },
         ProcedureKind::Impact(
             Impact {
-                ..short(Mode::StepAndPause)
+                ..short(Mode::RampAndHold)
             }
             .with_point(|point| point.stiffness = result_of(0, "stiffness")),
         ),

@@ -25,7 +25,7 @@ fn explicit(mode: Mode, time_step: f64) -> Stepping {
     Stepping {
         mode,
         integrator: Integrator::Explicit,
-        i_modification: mode != Mode::StepAndPause,
+        i_modification: mode != Mode::RampAndHold,
         ..every(time_step)
     }
 }
@@ -77,14 +77,14 @@ fn a_damper_absorbs_the_energy_of_the_closed_form_and_ramp_and_hold_shows_none_o
     let (coarse, fine) = (error(1e-3), error(5e-4));
     assert!((coarse / fine).log2() > 0.9, "{coarse} J, {fine} J");
     assert!(fine.abs() < 2e-3 * exact, "{fine} J of {exact} J");
-    assert!(lost(&let_go(Mode::StepAndPause, damper, 0.0, 5e-4)).abs() < 1e-4 * exact);
+    assert!(lost(&let_go(Mode::RampAndHold, damper, 0.0, 5e-4)).abs() < 1e-4 * exact);
 }
 
 /// Friction dissipates F_c over the whole path, in either mode: the cell keeps its sign through a pause.
 #[test]
 fn friction_dissipates_its_force_times_the_travel() {
     let friction = 0.05;
-    for mode in [CONTINUOUS, Mode::StepAndPause] {
+    for mode in [CONTINUOUS, Mode::RampAndHold] {
         let plan = let_go(mode, 0.0, friction, 5e-4);
         let record = run_unwatched(&plan);
         let travel: f64 = steps(&record)
@@ -111,7 +111,7 @@ fn without_damping_both_modes_are_the_same_run() {
         };
         run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(struck)]))
     };
-    let (one, other) = (by(CONTINUOUS), by(Mode::StepAndPause));
+    let (one, other) = (by(CONTINUOUS), by(Mode::RampAndHold));
     assert_eq!(steps(&one).len(), steps(&other).len());
     for (one, other) in steps(&one).iter().zip(steps(&other)) {
         assert!(

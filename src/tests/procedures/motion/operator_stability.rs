@@ -62,7 +62,7 @@ fn a_stiffer_spring_is_reported_in_both_modes() {
         remarks(plan, link)
     };
     for link in [VirtualLink::default(), NOISY] {
-        for mode in [Mode::StepAndPause, CONTINUOUS] {
+        for mode in [Mode::RampAndHold, CONTINUOUS] {
             let texts = of(mode, 250.0, link);
             assert_eq!(texts.len(), 1, "{mode:?}, {link:?}: {texts:?}");
             assert!(
@@ -73,7 +73,7 @@ fn a_stiffer_spring_is_reported_in_both_modes() {
             );
         }
         // A damper, or friction that reverses, is not mistaken for stiffness.
-        for mode in [Mode::StepAndPause, CONTINUOUS] {
+        for mode in [Mode::RampAndHold, CONTINUOUS] {
             assert_eq!(
                 of(mode, 310.0, link),
                 Vec::<String>::new(),
@@ -110,7 +110,7 @@ fn a_stiffer_storey_is_reported_by_its_number_in_both_modes() {
         remarks(plan, link)
     };
     for link in [VirtualLink::default(), NOISY] {
-        for mode in [Mode::StepAndPause, CONTINUOUS] {
+        for mode in [Mode::RampAndHold, CONTINUOUS] {
             let texts = of(mode, 450.0, link);
             assert_eq!(texts.len(), 1, "{mode:?}, {link:?}: {texts:?}");
             assert!(
@@ -119,7 +119,7 @@ fn a_stiffer_storey_is_reported_by_its_number_in_both_modes() {
                 texts[0]
             );
         }
-        for mode in [Mode::StepAndPause, CONTINUOUS] {
+        for mode in [Mode::RampAndHold, CONTINUOUS] {
             assert_eq!(
                 of(mode, 300.0, link),
                 Vec::<String>::new(),

@@ -240,7 +240,7 @@ fn a_missed_fraction_of_each_increment_shows_as_in_the_closed_form() {
             tracking: missed,
             ..VirtualLink::default()
         };
-        let (kept, followed) = followed(link, Mode::StepAndPause, per_cycle);
+        let (kept, followed) = followed(link, Mode::RampAndHold, per_cycle);
         let step = std::f64::consts::TAU / f64::from(per_cycle);
         let (real, imaginary) = (1.0 - missed * step.cos(), missed * step.sin());
         let (gain, phase) = (
@@ -340,7 +340,7 @@ fn tracking_error_holds_an_impact_on_a_storey_in_both_modes() {
         ..VirtualLink::default()
     };
     let continuous = Mode::Continuous { time_scale: SCALE };
-    for (mode, link) in [(continuous, lagging), (Mode::StepAndPause, short)] {
+    for (mode, link) in [(continuous, lagging), (Mode::RampAndHold, short)] {
         let energy = struck(mode, link, |plan| {
             plan.limits.tracking_energy_error = Interval {
                 low: 0.0,

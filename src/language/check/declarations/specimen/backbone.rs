@@ -6,8 +6,9 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::MissingPartner;
 use crate::check::wording::shown;
 use crate::codes::{E630, E631};
-use psd_physics::specimen::pinching::{CAPPING_CAPACITY, CAPPING_DISPLACEMENT, CAPPING_SLOPE};
-use psd_plan::schema::behaviours::argument;
+use psd_plan::schema::behaviours::{
+    CAPPING_CAPACITY, CAPPING_DISPLACEMENT, CAPPING_SLOPE, argument,
+};
 use psd_plan::{Behaviour, Pinching, Table, Unloading};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;

@@ -1,4 +1,4 @@
-//! Frames in a plan: the ground motion under them, their damping.
+//! The ground motion under a frame, and the damping of the frame.
 //! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
 use crate::formula::Formula;
