@@ -29,7 +29,7 @@ use psd_plan::{Interval, Limits, Plan};
 use psd_text::units::{Dimension, display};
 
 pub use connect::{Connected, connect};
-pub use guard::{Guard, Traversed, fault_of_ideal_step};
+pub use guard::{Guard, IdealSteps, Traversed, fault_of_ideal_step};
 pub use psd_plan::DeclaredNoise;
 pub use psd_plan::record::{Held, Identity};
 pub use psd_plan::{named_axis, of_axis, who};
@@ -310,6 +310,12 @@ pub trait Rig {
     /// This rig, if it is simulated, settles equally long after every move, and no entry is logged for each of its calls: its guard then
     /// takes whole steps in one call.
     fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
+        None
+    }
+
+    /// This rig, if it is a virtual one on which every reading is its target and the force of the specimen there, and no call of it is
+    /// logged.
+    fn ideal(&mut self) -> Option<&mut VirtualRig> {
         None
     }
 

@@ -35,6 +35,10 @@ pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps, if one is known.
     fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
     fn step_done(&mut self, _report: &StepReport) {}
+    /// Whether it follows the steps: without, no step is reported to it, and it asks for nothing between two steps.
+    fn follows_steps(&self) -> bool {
+        true
+    }
     fn procedure_finished(&mut self, _name: &str) {}
     /// The uncertainty of the results is being calculated by re-runs, of which `_done` are done.
     fn studying(&mut self, _done: usize, _of: usize) {}
@@ -181,6 +185,10 @@ impl Inspection {
 pub struct Unwatched;
 
 impl Observer for Unwatched {
+    fn follows_steps(&self) -> bool {
+        false
+    }
+
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }

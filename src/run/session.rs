@@ -7,7 +7,7 @@ use super::{Inspection, Keep, Motion, Next, Observer, StepReport};
 use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
-use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
+use psd_rig::{Guard, IdealSteps, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
 use psd_text::count::counted_in_words;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
@@ -188,6 +188,20 @@ impl<'run> Session<'run> {
                 ),
             }
         }
+    }
+
+    /// Steps with this pause \[s\] that need no report, on an ideal rig that carries the whole specimen.
+    pub(crate) fn ideal_steps(&mut self, pause: f64) -> Option<IdealSteps> {
+        if self.hybrid.is_some() || self.observer.follows_steps() {
+            return None;
+        }
+        self.guard.ideal_steps(pause)
+    }
+
+    /// A step is done that the observer does not follow.
+    #[inline]
+    pub(crate) const fn step_passed(&mut self, step: u64) {
+        self.step = Some(step);
     }
 
     /// Reports to the observer that a step is done, and asks whether to continue.
@@ -420,7 +434,31 @@ impl<'run> Session<'run> {
         pause: f64,
         reading: &mut Reading,
     ) -> Result<Option<UnfinishedStep>, Stop> {
-        let Err(ended) = self.guard.step(targets, pause, reading) else {
+        let stepped = self.guard.step(targets, pause, reading);
+        self.with_broken(stepped, reading)
+    }
+
+    /// The same of a run on an ideal rig, whose observer follows no steps.
+    #[inline]
+    pub(crate) fn step_ideally(
+        &mut self,
+        steps: IdealSteps,
+        targets: &[f64],
+        reading: &mut Reading,
+    ) -> Result<Option<UnfinishedStep>, Stop> {
+        let stepped = self.guard.step_ideally(steps, targets, reading);
+        if stepped.is_ok() {
+            return Ok(None);
+        }
+        self.with_broken(stepped, reading)
+    }
+
+    fn with_broken(
+        &mut self,
+        stepped: Result<(), UnfinishedStep>,
+        reading: &mut Reading,
+    ) -> Result<Option<UnfinishedStep>, Stop> {
+        let Err(ended) = stepped else {
             return Ok(None);
         };
         match self.guard.take_broken() {

@@ -300,6 +300,12 @@ impl StifferSprings {
         Self::of(storeys.into_iter().enumerate().map(judged).collect())
     }
 
+    /// Whether any reading can show that a specimen is stiffer: not in tangent form.
+    pub(crate) fn watches(&self) -> bool {
+        let mut springs = self.springs.iter();
+        springs.any(|(_, spring)| spring.judged.integrator != Integrator::Tangent)
+    }
+
     pub(crate) fn take(
         &mut self,
         reading: &Reading,

@@ -20,7 +20,7 @@ use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::matrix::Vector;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::{InspectTrigger, Mode, Stepping};
-use psd_rig::Reading;
+use psd_rig::{IdealSteps, Reading};
 
 /// The energy of a test at the end of a step \[J\].
 pub(crate) struct Balance {
@@ -126,7 +126,16 @@ pub(crate) fn run<S: Stepped>(
         wall_time: session.guard.time(),
         is_cut_off: false,
     };
-    let ended = taken.all(steps, plan, followed, session);
+    let is_followed = plan.mode != Mode::StepAndPause || !plan.inspect.is_empty();
+    let ideal = if is_followed || taken.target != taken.reading.displacement {
+        None
+    } else {
+        session.ideal_steps(steps.pause)
+    };
+    let ended = match ideal {
+        Some(ideal) => taken.all_ideally(steps, ideal, followed, session),
+        None => taken.all(steps, plan, followed, session),
+    };
     let StepsTaken {
         mut stepped,
         monitors,
@@ -221,6 +230,70 @@ impl<S: Stepped> StepsTaken<S> {
         }
         let braked = self.motion.as_ref().map(|motion| motion.brake(session));
         braked.unwrap_or(Ok(()))
+    }
+
+    /// All steps on an ideal rig that nobody follows: no tracking error can arise.
+    fn all_ideally(
+        &mut self,
+        steps: &Steps,
+        ideal: IdealSteps,
+        followed: &mut TrackingSummary,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let mut assessed = None;
+        let ended = self.each_ideally(steps, ideal, &mut assessed, session);
+        // The reference of the errors never falls: the last one shows whether any was above zero.
+        if let Some(input) = assessed {
+            followed.assess(self.monitors.tracking(), input, session);
+        }
+        ended
+    }
+
+    /// `assessed`: the reference of the errors at the last completed step \[J\].
+    fn each_ideally(
+        &mut self,
+        steps: &Steps,
+        ideal: IdealSteps,
+        assessed: &mut Option<f64>,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let Self {
+            stepped,
+            stiffer,
+            monitors,
+            keeps_steps,
+            target,
+            reading,
+            wall_time,
+            ..
+        } = self;
+        let watches = stiffer.watches();
+        let mut struck = false;
+        for _ in 0..steps.count {
+            stepped.predict(target);
+            let ended = session.step_ideally(ideal, target, reading)?;
+            stepped.complete(reading);
+            let Balance { error, input } = stepped.sum_up();
+            *wall_time = reading.time;
+            if *keeps_steps {
+                stepped.keep(monitors.tracking(), *wall_time);
+            }
+            if let Some(ended) = ended {
+                return Err(ended.fault.into());
+            }
+            if watches {
+                let before = std::mem::replace(&mut struck, stepped.is_struck());
+                stiffer.take(reading, &[], before || struck, session);
+            }
+            *assessed = Some(input);
+            let energy_error = if error == 0.0 { 0.0 } else { error / input };
+            session.guard.check_energy_error(energy_error)?;
+            session.step_passed(stepped.axes().step + stepped.before());
+            if stepped.over() {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Moves to the next target and reads there; the stop of a reading that exceeded a limit, there or on the way.

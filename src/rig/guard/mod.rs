@@ -6,6 +6,7 @@ pub mod about;
 mod axial;
 pub mod final_hold;
 mod holds;
+mod ideal;
 pub mod path;
 pub mod read;
 pub mod smooth_paths;
@@ -17,6 +18,7 @@ use super::{
 };
 use axial::AxialAxes;
 use holds::Holds;
+pub use ideal::{IdealSteps, fault_of_ideal_step};
 use psd_plan::{AxialAxis, Interval, Limits};
 
 /// A rig and the limits of its motion.
@@ -429,31 +431,6 @@ impl<'rig> Guard<'rig> {
 /// Infinity is inside "no limit", but is not a position of a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
-}
-
-/// The fault with which a guard stops an ideal rig of one axis in a step from one position to another \[m\], where this force \[N\] is
-/// read. Speeds and tracking errors are not checked.
-#[must_use]
-pub fn fault_of_ideal_step(limits: &Limits, [from, to]: [f64; 2], force: f64) -> Option<RigFault> {
-    let checks = [
-        (LimitedQuantity::TargetDisplacement, limits.displacement, to),
-        (
-            LimitedQuantity::Increment,
-            limits.increment,
-            increment(from, to),
-        ),
-        (LimitedQuantity::Force, limits.force, force),
-    ];
-    let (quantity, limit, value) = checks
-        .into_iter()
-        .find(|(_, limit, value)| !inside(*limit, *value))?;
-    Some(RigFault::LimitBreached {
-        quantity,
-        value,
-        low: limit.low,
-        high: limit.high,
-        axis: None,
-    })
 }
 
 /// The first value of a reading that is outside its limit: that of its axis, if the axis has its own.

@@ -82,6 +82,14 @@ impl Actuator {
         travel
     }
 
+    /// The piston, which does not lag, goes to a target \[m\] and stops there; the distance to it \[m\].
+    #[inline]
+    pub const fn jump(&mut self, target: f64) -> f64 {
+        let distance = (target - self.reference).abs();
+        (self.reference, self.reference_velocity) = (target, 0.0);
+        distance
+    }
+
     /// The reference is at its position and passes it at `velocity` \[m/s\]: an interrupted motion is continued.
     pub const fn pass(&mut self, velocity: f64) -> Motion {
         self.reference_velocity = velocity;

@@ -59,6 +59,8 @@ pub struct VirtualRig {
     is_still: bool,
     /// Settling time of every move \[s\]; None if it differs from move to move, or is beyond the timeout.
     wait: Option<f64>,
+    /// Whether every reading after a move is its target and the force of the specimen there.
+    is_ideal: bool,
     /// The paths that the axes follow, or were stopped on.
     interrupted: Vec<Course>,
 }
@@ -121,10 +123,21 @@ impl VirtualRig {
             moved: None,
             is_still,
             wait: None,
+            is_ideal: false,
             interrupted: Vec::new(),
         };
         if is_still && link.tracking == 0.0 {
             rig.wait = rig.settling(&at_rest);
+            let errors = [
+                link.noise,
+                link.resolution,
+                link.force_resolution,
+                link.drift,
+            ];
+            rig.is_ideal = rig.wait.is_some()
+                && sign == 1.0
+                && errors.iter().all(|error| *error == 0.0)
+                && !rig.springs.have_feedback();
         }
         rig
     }
@@ -373,6 +386,41 @@ impl VirtualRig {
     }
 }
 
+impl VirtualRig {
+    /// [`WholeSteps::step`] of an ideal rig.
+    #[inline]
+    pub(super) fn step_ideally(
+        &mut self,
+        targets: &[f64],
+        speed: f64,
+        pause: f64,
+        reading: &mut Reading,
+    ) {
+        let mut travel: f64 = 0.0;
+        for (axis, target) in self.axes.iter_mut().zip(targets) {
+            travel = travel.max(axis.actuator.jump(*target));
+        }
+        let seconds = travel / speed;
+        self.proposed = None;
+        self.moved = Some([self.time, seconds]);
+        self.time += seconds;
+        self.time += self.wait.unwrap_or(0.0);
+        if pause > 0.0 {
+            self.time += pause;
+        }
+        self.bent.copy_from_slice(targets);
+        self.springs
+            .bend_at_once(targets, &mut self.restoring_force);
+        reading.time = self.time;
+        targets.clone_into(&mut reading.displacement);
+        reading.force.clone_from(&self.restoring_force);
+        // A cell adds no drift and no noise.
+        for force in &mut reading.force {
+            *force += 0.0;
+        }
+    }
+}
+
 impl WholeSteps for VirtualRig {
     fn step(
         &mut self,
@@ -484,6 +532,10 @@ impl Rig for VirtualRig {
 
     fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
         (self.wait.is_some() && self.axial.is_empty()).then_some(self)
+    }
+
+    fn ideal(&mut self) -> Option<&mut VirtualRig> {
+        (self.is_ideal && self.axial.is_empty()).then_some(self)
     }
 
     fn traverse(

@@ -144,6 +144,34 @@ impl Springs {
         }
     }
 
+    /// The same without relaxation, for which the travel does not matter.
+    #[inline]
+    pub(super) fn bend_at_once(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
+        match self {
+            Self::Storeys(storeys) => {
+                each_drift(storeys, displacement.iter().copied(), |storey, drift| {
+                    if drift != storey.drift {
+                        storey.shear = storey.model.move_to(drift);
+                        storey.drift = drift;
+                    }
+                });
+                let shears = storeys.iter().map(|storey| (storey.shear, storey.stands));
+                set_forces(shears, restoring_force);
+            }
+            Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
+        }
+    }
+
+    /// Whether the cells measure more than the restoring forces.
+    pub(super) fn have_feedback(&self) -> bool {
+        match self {
+            Self::Storeys(storeys) => storeys
+                .iter()
+                .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none()),
+            Self::Matrix { .. } => false,
+        }
+    }
+
     /// The axial load on a storey has this P-Δ per drift \[N/m\] from here on.
     pub(super) fn lean(&mut self, storey: usize, per_drift: f64) {
         if let Self::Storeys(storeys) = self
@@ -176,10 +204,9 @@ impl Springs {
         velocities: impl Iterator<Item = f64>,
         force: &mut [f64],
     ) {
+        let have_feedback = self.have_feedback();
         if let Self::Storeys(storeys) = self
-            && storeys
-                .iter()
-                .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
+            && have_feedback
         {
             let mut shears = Vec::with_capacity(storeys.len());
             each_drift(storeys, velocities, |storey, velocity| {
@@ -254,7 +281,8 @@ impl Springs {
     }
 }
 
-/// Calls with the velocity of the drift of each storey \[m/s\], from those of the axes.
+/// Calls with the drift of each storey \[m\] from the displacements of the axes, or with its velocity \[m/s\] from theirs.
+#[inline]
 fn each_drift(
     storeys: &mut [Storey],
     axes: impl Iterator<Item = f64>,

@@ -223,3 +223,60 @@ fn refuses_what_it_cannot_do() {
     assert!(rig.propose(&[0.001], Some(0.0)).is_err());
     assert!(rig.execute().is_err(), "nothing was proposed");
 }
+
+/// In one call or in four, an ideal rig is at the same place at the same time with the same force; an error, a lag or a damper makes it one
+/// that is not ideal.
+#[test]
+fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
+    let ideal = VirtualLink::default();
+    let (mut once, mut stepwise) = (rig(ideal), rig(ideal));
+    let mut reading = once.read().unwrap();
+    for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
+        let rig = once.ideal().expect("an ideal rig");
+        rig.step_ideally(&[target], 0.01, 0.5, &mut reading);
+        stepwise.propose(&[target], Some(0.01)).unwrap();
+        stepwise.execute().unwrap();
+        stepwise.pause(0.5).unwrap();
+        assert_eq!(reading, stepwise.read().unwrap());
+        assert_eq!(
+            (reading.displacement[0], reading.force[0]),
+            (target, 1000.0 * target)
+        );
+        assert_eq!(once.read_moved().unwrap(), stepwise.read_moved().unwrap());
+    }
+    let links = [
+        VirtualLink {
+            noise: 1.0,
+            ..ideal
+        },
+        VirtualLink {
+            resolution: 1e-6,
+            ..ideal
+        },
+        VirtualLink {
+            force_resolution: 0.1,
+            ..ideal
+        },
+        VirtualLink {
+            drift: 0.1,
+            ..ideal
+        },
+        VirtualLink { lag: 0.1, ..ideal },
+        VirtualLink {
+            tracking: 0.1,
+            ..ideal
+        },
+    ];
+    for link in links {
+        assert!(rig(link).ideal().is_none(), "{link:?}");
+    }
+    let others = [
+        (specimen(5.0, 0.0), 1.0),
+        (specimen(0.0, 5.0), 1.0),
+        (specimen(0.0, 0.0), -1.0),
+    ];
+    for (specimen, sign) in others {
+        let mut rig = VirtualRig::new(ideal, AT_ONCE, Some(&specimen), sign);
+        assert!(rig.ideal().is_none());
+    }
+}
