@@ -7,7 +7,9 @@ use super::{Inspection, Keep, Motion, Next, Observer, StepReport};
 use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
-use psd_rig::{Guard, IdealSteps, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
+use psd_rig::{
+    Guard, IdealSteps, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep,
+};
 use psd_text::count::counted_in_words;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;

@@ -126,7 +126,7 @@ pub(crate) fn run<S: Stepped>(
         wall_time: session.guard.time(),
         is_cut_off: false,
     };
-    let is_followed = plan.mode != Mode::StepAndPause || !plan.inspect.is_empty();
+    let is_followed = plan.mode != Mode::RampAndHold || !plan.inspect.is_empty();
     let ideal = if is_followed || taken.target != taken.reading.displacement {
         None
     } else {
