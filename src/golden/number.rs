@@ -2,6 +2,7 @@
 
 use super::finding::{Change, Count, Moved, RowRef};
 use super::tolerance::Rule;
+use psd_physics::statistics::samples::peak;
 use psd_text::units::Dimension;
 
 /// One number; None if both are within the tolerance.
@@ -74,8 +75,5 @@ pub(super) fn many(
 
 /// The largest absolute value of some numbers.
 pub(super) fn scale(values: impl Iterator<Item = f64>) -> f64 {
-    values
-        .filter(|value| value.is_finite())
-        .map(f64::abs)
-        .fold(0.0, f64::max)
+    peak(values.filter(|value| value.is_finite()))
 }

@@ -5,6 +5,7 @@
 use super::session::{Session, signed};
 use super::stop::Stop;
 use super::{Extent, Inspection, Motion};
+use psd_physics::tracking::trajectory::longest_travel;
 use psd_plan::record::UNLOADING;
 use psd_plan::record::{EventKind, Outcome};
 use psd_plan::{Interval, Limits, Plan, RealLink, SafeState};
@@ -152,11 +153,7 @@ impl Session<'_> {
                 high: value,
             }))
         };
-        let longest = from
-            .iter()
-            .zip(&self.home)
-            .map(|(from, to)| (to - from).abs())
-            .fold(0.0, f64::max);
+        let longest = longest_travel(from, &self.home);
         let speed = self.guard.own_speed();
         let expected = Extent {
             travel: over(&mut from.iter().chain(&self.home).copied()),

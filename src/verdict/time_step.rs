@@ -3,6 +3,7 @@
 
 use super::condition::{decide, is_equality};
 use super::{ConditionOutcome, Verdict};
+use psd_physics::statistics::samples::peak;
 use psd_plan::formula::{ResultPart, ResultReference, Results};
 use psd_plan::procedures::impact::block::TIME_STEP;
 use psd_plan::time_step::{FINER, in_finer_steps};
@@ -115,11 +116,7 @@ fn finer_by(own: &ConditionOutcome, finer: &[ConditionOutcome; 4]) -> Option<f64
     }
     let margin = |outcome: &ConditionOutcome| outcome.margin;
     let (here, quarter) = (margin(own)?, margin(&finer[1])?);
-    let wide = finer
-        .iter()
-        .filter_map(margin)
-        .map(|there| (there - here).abs())
-        .fold(0.0, f64::max);
+    let wide = peak(finer.iter().filter_map(margin).map(|there| there - here));
     let band = finer[1].guard_band.unwrap_or(0.0);
     let away = (quarter - band).abs().min((quarter + band).abs());
     let times = (wide / away).log2().ceil().exp2().max(8.0);

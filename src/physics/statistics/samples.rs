@@ -1,4 +1,6 @@
-//! Mean and standard deviation of samples. In: numbers. Out: numbers. It knows no instrument.
+//! Mean, standard deviation and peak of samples. In: numbers. Out: numbers. It knows no instrument.
+
+use std::borrow::Borrow;
 
 /// Arithmetic mean; NaN without values.
 #[must_use]
@@ -6,6 +8,13 @@
 pub fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len();
     values.sum::<f64>() / count as f64
+}
+
+/// Peak absolute value; 0 without values.
+#[must_use]
+pub fn peak(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    let sizes = values.into_iter().map(|value| value.borrow().abs());
+    sizes.fold(0.0, f64::max)
 }
 
 /// Standard deviation of the samples; 0 for one.

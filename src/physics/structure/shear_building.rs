@@ -2,6 +2,7 @@
 //! stiffness matrices, storey drifts, shears. Floor 0 here is the lowest that moves.
 
 use super::matrix::SymmetricBand;
+use crate::statistics::samples::peak;
 
 /// K of a shear building from the total stiffness of each storey \[N/m\], from the ground up (Melo et al. 2006, Fig. 1: two columns k
 /// make 2k): `K_ii = k_i + k_(i+1)`, `K_(i+1,i) = −k_(i+1)`.
@@ -42,9 +43,7 @@ pub fn storeys_of(stiffness: &SymmetricBand) -> Option<Vec<f64>> {
         0,
         stiffness.entry(0, 0) - stiffnesses.first().copied().unwrap_or(0.0),
     );
-    let largest = (0..order)
-        .map(|i| stiffness.entry(i, i).abs())
-        .fold(0.0, f64::max);
+    let largest = peak((0..order).map(|i| stiffness.entry(i, i)));
     let whole = storey_stiffness(&stiffnesses);
     let same =
         (0..order).all(|i| (whole.entry(i, i) - stiffness.entry(i, i)).abs() <= 1e-9 * largest);

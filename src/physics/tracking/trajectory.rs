@@ -1,6 +1,7 @@
 //! A smooth trajectory of an actuator: Hermite's cubic between two positions with a velocity each. In: the ends and the time between
 //! them. Out: position, velocity and acceleration at any time, peaks in closed form.
 
+use crate::statistics::samples::peak;
 use serde::{Deserialize, Serialize};
 
 /// Hermite's cubic, in laboratory time.
@@ -140,6 +141,12 @@ impl Path {
             jerk: (6.0 * (start_velocity + end_velocity) - 12.0 * chord) / (seconds * seconds),
         }
     }
+}
+
+/// Longest travel of an axis from one position of all axes to another \[m\].
+#[must_use]
+pub fn longest_travel(from: &[f64], to: &[f64]) -> f64 {
+    peak(from.iter().zip(to).map(|(from, to)| to - from))
 }
 
 #[cfg(test)]

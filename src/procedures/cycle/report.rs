@@ -3,6 +3,7 @@
 use crate::procedures::stiffness_ramp::curve::curve_report;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
+use psd_physics::statistics::samples::peak;
 use psd_plan::record::{CycleHistory, WholeCycle};
 use psd_text::units::Dimension;
 
@@ -45,12 +46,7 @@ pub(crate) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
 
 /// Every number of a column in the unit of its largest value.
 fn rows(cycles: &[WholeCycle]) -> Block {
-    let most = |read: fn(&WholeCycle) -> f64| {
-        cycles
-            .iter()
-            .map(|cycle| read(cycle).abs())
-            .fold(0.0, f64::max)
-    };
+    let most = |read: fn(&WholeCycle) -> f64| peak(cycles.iter().map(read));
     let (amplitude, energy) = (
         most(|cycle| cycle.amplitude),
         most(|cycle| cycle.found.energy),

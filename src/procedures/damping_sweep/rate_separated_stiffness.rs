@@ -1,6 +1,7 @@
 //! Stiffness from readings in motion, which include the force of dampers: F = F₀ + K·d + c·v. In: displacement and force, reading by
 //! reading, evenly in time. Out: K with its standard error, where the readings determine it.
 
+use psd_physics::statistics::samples::peak;
 use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Vector3};
@@ -58,12 +59,7 @@ fn plane(points: &VecDeque<[f64; 3]>, noise: (f64, f64)) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     let mean =
         [0, 1, 2].map(|part: usize| points.iter().map(|point| point[part]).sum::<f64>() / count);
-    let size = [0, 1].map(|part: usize| {
-        points
-            .iter()
-            .map(|point| (point[part] - mean[part]).abs())
-            .fold(0.0, f64::max)
-    });
+    let size = [0, 1].map(|part: usize| peak(points.iter().map(|point| point[part] - mean[part])));
     if size[0] <= 0.0 || size[1] <= 0.0 {
         return None;
     }

@@ -6,6 +6,7 @@ use crate::report::figures::chart::{
     Style, palette,
 };
 use crate::report::figures::points::{PointCollector, Points};
+use psd_physics::statistics::samples::peak;
 use psd_plan::record::{Floors, Modes};
 use psd_text::units::Dimension;
 
@@ -134,11 +135,7 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     for (curve, series) in chart.series.iter_mut().enumerate() {
         series.style = Style::line(COLOURS[curve % MOST_CURVES], 0.7, SOLID);
     }
-    let largest = steps
-        .iter()
-        .flat_map(S::command)
-        .map(|command| command.abs())
-        .fold(0.0, f64::max);
+    let largest = peak(steps.iter().flat_map(S::command));
     if largest > 0.0 {
         let all = |step: &S| {
             step.tracking()

@@ -7,6 +7,7 @@ use crate::procedures::stepping::predicted::{
     PointMotion, TimeSteps, growth_of_frame, growth_of_point,
 };
 use psd_physics::identification::damping_ratio;
+use psd_physics::statistics::samples::peak;
 use psd_physics::structure::Matrices;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{ImpactHistory, ImpactStep, ProcedureRecord, StruckFrame};
@@ -79,10 +80,9 @@ fn growth(
     let (Some(mass), Some(stiffness)) = (input(schema::MASS.name), input(STIFFNESS.name)) else {
         return Vec::new();
     };
-    let sizes = history.steps.iter().map(|step| step.computed.abs());
     let motion = PointMotion {
         angular_frequency: (stiffness / mass).sqrt(),
-        amplitude: sizes.fold(0.0, f64::max),
+        amplitude: peak(history.steps.iter().map(|step| step.computed)),
         duration: history.steps.last().map_or(0.0, |step| step.time),
     };
     growth_of_point(plan, &impact.stepping, history.time_step, &motion)

@@ -9,6 +9,7 @@ use crate::procedures::stepping::energy;
 use crate::report::document::Block;
 use crate::report::sections::results::{actuators, tracking};
 use crate::report::{Run, number};
+use psd_physics::statistics::samples::peak;
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors, ProcedureRecord, ShakeHistory};
 use psd_plan::{Ground, Shake};
@@ -92,11 +93,7 @@ fn integration(
 
 /// Largest acceleration as applied beside that of the record over the same time and with the same factor.
 fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
-    let applied = history
-        .steps
-        .iter()
-        .map(|step| step.ground_acceleration.abs())
-        .fold(0.0, f64::max);
+    let applied = peak(history.steps.iter().map(|step| step.ground_acceleration));
     let text = |value| number::text(value, Dimension::ACCELERATION);
     format!(
         "peak applied acceleration {}, of the record before scaling {}",

@@ -7,6 +7,7 @@
 
 use super::tracking::delay;
 use crate::procedures::common::predicted::row;
+use psd_physics::statistics::samples::peak;
 use psd_physics::statistics::DeclaredNoise;
 use psd_physics::structure::substructures::Assemblies;
 use psd_plan::record::{Floors, Modes};
@@ -112,11 +113,7 @@ pub(crate) fn growth_of_frame<S: Floors>(
         delay(plan, stepping, time_step),
         uncertain(plan, stepping.mode),
     );
-    let amplitude = steps
-        .iter()
-        .flat_map(S::computed)
-        .map(|displacement| displacement.abs())
-        .fold(0.0, f64::max);
+    let amplitude = peak(steps.iter().flat_map(S::computed));
     let Some(modes) = modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };

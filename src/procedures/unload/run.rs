@@ -11,6 +11,7 @@ use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use psd_physics::statistics::samples::peak;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::structure::substructures::on_the_rig;
 use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
@@ -211,17 +212,17 @@ pub(crate) fn to_rest(
     let secants = vec![None; at.force.len()];
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.floor_noise();
-    let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
+    let rounding = ROUNDING * f64::EPSILON * peak(&at.displacement);
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let by_readings = within.is_none();
     let within = within.unwrap_or_else(|| {
         detectable
-            .max(SMALL * largest(&at.force))
+            .max(SMALL * peak(&at.force))
             .max(f64::MIN_POSITIVE)
     });
     let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
     for step in before + 1..=before + MOST_TARGETS {
-        if largest(&at.force) <= within {
+        if peak(&at.force) <= within {
             return Ok(rest(at));
         }
         // Another reading has another error.
@@ -254,7 +255,7 @@ pub(crate) fn to_rest(
             break;
         }
     }
-    if largest(&at.force) > within {
+    if peak(&at.force) > within {
         let (force, wanted) = (
             rest(at.clone()).largest().1,
             readable(within, Dimension::FORCE),
@@ -301,11 +302,4 @@ fn rest(reading: Reading) -> Rest {
         force: reading.force,
         ..Rest::default()
     }
-}
-
-/// Peak absolute value.
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |largest, value| largest.max(value.abs()))
 }

@@ -10,6 +10,7 @@ use crate::procedures::common::perturbed_inputs::UncertainRun;
 use psd_physics::integrator::tangent::NOISE_MULTIPLE;
 use psd_physics::structure::substructures::Assemblies;
 use psd_physics::structure::{Loaded, Unloading};
+use psd_physics::tracking::trajectory::longest_travel;
 use psd_plan::record::{Rest, UnloadStep};
 use psd_plan::uncertainty::{Contribution, NOISE, Source};
 
@@ -200,14 +201,8 @@ fn shown(
             .windows(2)
             .map(|pair| (loaded(&pair[0]), loaded(&pair[1])))
     };
-    let change = |(from, to): (Loaded<'_>, Loaded<'_>)| {
-        let changes = from
-            .displacement
-            .iter()
-            .zip(to.displacement)
-            .map(|(from, to)| (to - from).abs());
-        changes.fold(0.0, f64::max)
-    };
+    let change =
+        |(from, to): (Loaded<'_>, Loaded<'_>)| longest_travel(from.displacement, to.displacement);
     let farthest = moves().map(change).fold(0.0, f64::max);
     // The noise of a shear is that of all cells above it; the noise of a storey drift is that of two positions.
     let scales = axes.scales();

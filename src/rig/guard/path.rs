@@ -2,6 +2,7 @@
 //! rig and its target. Out: targets whose increments are inside the limit. It moves nothing.
 
 use super::{Guard, increment};
+use psd_physics::tracking::trajectory::longest_travel;
 
 /// Largest number of moves of one motion.
 const MOST: f64 = 1e5;
@@ -11,11 +12,7 @@ impl Guard<'_> {
     /// itself.
     #[must_use]
     pub fn increments_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
-        let longest = targets
-            .iter()
-            .zip(&self.commanded)
-            .map(|(to, from)| (to - from).abs())
-            .fold(0.0, f64::max);
+        let longest = longest_travel(&self.commanded, targets);
         let parts = (longest / self.limits.increment.high * (1.0 - 4.0 * f64::EPSILON))
             .ceil()
             .max(1.0);

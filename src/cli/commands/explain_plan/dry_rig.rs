@@ -1,6 +1,7 @@
 //! A simulated rig that records the range of displacement, force and speed of each procedure. In: a plan. Out: the record of a run on it,
 //! and the ranges.
 
+use psd_physics::statistics::samples::peak;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -87,7 +88,7 @@ fn without_rounding(reaches: &mut [Reach], ranges: fn(&mut Reach) -> &mut Vec<In
         .flat_map(|reach| ranges(reach).iter().flat_map(ends))
         .collect();
     let finite = all.into_iter().filter(|end| end.is_finite());
-    let tiny = 1e-12 * finite.map(f64::abs).fold(0.0, f64::max);
+    let tiny = 1e-12 * peak(finite);
     for interval in reaches.iter_mut().flat_map(ranges) {
         for end in [&mut interval.low, &mut interval.high] {
             if end.abs() < tiny {

@@ -241,13 +241,6 @@ impl Unloading {
     }
 }
 
-/// Peak absolute value.
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |largest, value| largest.max(value.abs()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::shear_building::{floor_forces, storey_stiffness};

@@ -11,9 +11,10 @@
 //! than `LITTLE` of the load at the start.
 
 use super::line::Line;
-use super::{BELIEVED, Loaded, Unloading, largest};
+use super::{BELIEVED, Loaded, Unloading};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
+use crate::statistics::samples::peak;
 
 /// PathPart of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
@@ -102,7 +103,7 @@ impl UnloadingPath {
             }
             None => vec![part(
                 1.0,
-                (0.0, largest(at.force)),
+                (0.0, peak(at.force)),
                 (force, unloading.force_of(displacement)),
             )],
         };
@@ -113,7 +114,7 @@ impl UnloadingPath {
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         if self.unloading.storeys().is_none() {
-            let share = self.parts[0].moves(largest(force)).abs() / largest(force);
+            let share = self.parts[0].moves(peak(force)).abs() / peak(force);
             return self
                 .unloading
                 .moves(force)
@@ -129,7 +130,7 @@ impl UnloadingPath {
     /// Largest load of a part \[N\]: it falls with every effective move.
     #[must_use]
     pub fn left(&self, force: &[f64]) -> f64 {
-        largest(&self.loads(force))
+        peak(self.loads(force))
     }
 
     /// Whether a part is loaded in the opposite direction by more than a little: a part held by friction is not moved to and fro.
@@ -163,7 +164,7 @@ impl UnloadingPath {
 
     fn loads(&self, force: &[f64]) -> Vec<f64> {
         if self.unloading.storeys().is_none() {
-            return vec![largest(force)];
+            return vec![peak(force)];
         }
         self.unloading.loads(force)
     }
@@ -172,7 +173,7 @@ impl UnloadingPath {
     /// without storeys.
     pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
         if self.unloading.storeys().is_none() {
-            let [before, after] = [from, to].map(|at| largest(at.force));
+            let [before, after] = [from, to].map(|at| peak(at.force));
             let travel = self.parts[0].moves(before);
             let part = &mut self.parts[0];
             part.learn(part.line.last().0 + travel, after);
@@ -366,7 +367,7 @@ mod tests {
                 UnloadingPath::new(Unloading::of(&expected).unwrap(), DeclaredNoise::NONE, at);
             for _ in 0..12 {
                 let force = force_at(&displacements);
-                if largest(&force) < 1e-9 {
+                if peak(force) < 1e-9 {
                     break;
                 }
                 let next: Vec<f64> = displacements
@@ -387,7 +388,7 @@ mod tests {
                 );
                 displacements = next;
             }
-            assert!(largest(&displacements) < 1e-9, "{displacements:?}");
+            assert!(peak(&displacements) < 1e-9, "{displacements:?}");
         }
     }
 

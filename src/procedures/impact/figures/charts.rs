@@ -4,6 +4,7 @@ use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::report::figures::chart::{
     Band, Chart, DASHED, DOTTED, Quantity, Reference, SOLID, Series, Style, palette,
 };
+use psd_physics::statistics::samples::peak;
 use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
 use psd_text::units::Dimension;
 
@@ -169,11 +170,7 @@ pub(crate) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
 /// The tracking error, and the tracking indicator as a length: divided by the largest command.
 pub(crate) fn tracking(history: &ImpactHistory) -> Chart {
     let mut chart = against_time(history, Quantity::of("Tracking error", Dimension::LENGTH));
-    let largest = history
-        .steps
-        .iter()
-        .map(|step| step.command.abs())
-        .fold(0.0, f64::max);
+    let largest = peak(history.steps.iter().map(|step| step.command));
     let missed = |step: &ImpactStep| step.displacement - step.command;
     chart.series = vec![series(
         history,

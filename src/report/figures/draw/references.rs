@@ -1,6 +1,7 @@
 //! Reference lines with their text, at the position that covers the least of the data. In: a chart on its sheet. Out: shapes on a canvas.
 
 use plotters::style::text_anchor::{HPos, VPos};
+use psd_physics::statistics::samples::peak;
 
 use super::super::canvas::{Lettering, Point};
 use super::super::chart::{Chart, LineStyle, Reference, Series};
@@ -29,12 +30,8 @@ fn drawn(chart: &Chart) -> (&[Reference], usize) {
 /// axis range would make the curves flat.
 pub(super) fn near(chart: &Chart) -> impl Iterator<Item = f64> {
     const FARTHEST: f64 = 2.5;
-    let largest = chart
-        .series
-        .iter()
-        .flat_map(|series| &series.points)
-        .map(|point| point.1.abs())
-        .fold(0.0, f64::max);
+    let points = chart.series.iter().flat_map(|series| &series.points);
+    let largest = peak(points.map(|point| point.1));
     drawn(chart)
         .0
         .iter()

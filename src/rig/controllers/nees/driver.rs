@@ -12,6 +12,7 @@ use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient,
     Sample,
 };
+use psd_physics::tracking::trajectory::longest_travel;
 
 /// Name of the session.
 const SESSION: &str = "psd";
@@ -259,11 +260,7 @@ impl Device for Nees {
     fn finish(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (.., transaction) = proposed(going)?;
         let wait = self.client.reply_timeout();
-        let twice = |from: &[f64]| {
-            let travels = going.targets.iter().zip(from);
-            let travels = travels.map(|(to, from)| (to - from).abs());
-            2.0 * travels.fold(0.0, f64::max) / going.speed
-        };
+        let twice = |from: &[f64]| 2.0 * longest_travel(from, &going.targets) / going.speed;
         let travel = twice(&self.executed).max(twice(&self.last).min(LONGEST_BY_READING));
         let motion = travel + self.settling.max(wait);
         self.executed.clone_from(&going.targets);

@@ -10,6 +10,7 @@ use crate::output::{print_message, print_result};
 use crate::settings::Settings;
 use psd::run::remote_control::Specimen;
 use psd::run::{Disconnect, Extent, Motion};
+use psd_physics::tracking::trajectory::longest_travel;
 use psd_plan::record::Outcome;
 use psd_plan::{Interval, Plan};
 use psd_rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, StopRequest};
@@ -115,11 +116,7 @@ impl JogSession<'_> {
             (f64::INFINITY, f64::NEG_INFINITY),
             |(low, high), position| (low.min(*position), high.max(*position)),
         );
-        let distance = from
-            .iter()
-            .zip(to)
-            .map(|(from, to)| (to - from).abs())
-            .fold(0.0, f64::max);
+        let distance = longest_travel(from, to);
         let speed = self.wanted.speed.or(self.own_speed).unwrap_or(OWN_SPEED);
         let expected = Extent {
             travel: Some(Interval { low, high }),
