@@ -2,7 +2,7 @@
 //! Out: words.
 
 use crate::{Frame, Plan, Scale};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_text::units::Dimension;
 use psd_text::units::display::plain;
 

@@ -33,7 +33,7 @@ use psd_language::check::checker::Checker;
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
 use psd_physics::self_test::SelfTestPart;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::formula::Formula;
 use psd_plan::procedures::preload::block::AXIAL_FORCE;
 use psd_plan::record::{

@@ -7,7 +7,7 @@ use super::session::Session;
 use super::start;
 use super::start::remedy;
 use super::stop::Stop;
-use psd_physics::structure::substructures::on_the_rig;
+use psd_physics::structure::assemblies::on_the_rig;
 use psd_plan::record::EventKind;
 use psd_plan::{AxialAxis, Plan, PretestCheck, RealLink};
 use psd_rig::safety::failpoint;

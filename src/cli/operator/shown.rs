@@ -3,7 +3,7 @@
 //! the last axis is shown alone: the sum of forces of several specimens is not the shear of any storey.
 
 use psd::run::StepReport;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::Plan;
 
 /// The part of a step that is shown.

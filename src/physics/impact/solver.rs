@@ -15,10 +15,10 @@ use crate::integrator::state::State;
 use crate::integrator::step_form::{StepContact, StepForm};
 use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
+use crate::structure::assemblies::StoreyReadings;
 use crate::structure::elements::ElementReading;
 use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
-use crate::structure::substructures::StoreyReadings;
 
 /// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]

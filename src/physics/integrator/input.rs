@@ -4,9 +4,9 @@ use thiserror::Error;
 
 use super::Integrator;
 use super::tangents::Tangents;
+use crate::structure::assemblies::StoreyReadings;
 use crate::structure::elements::{ElementReading, Elements};
 use crate::structure::matrix::{Matrix as _, Vector};
-use crate::structure::substructures::StoreyReadings;
 use crate::structure::{Matrices, NotPositiveDefinite};
 
 /// Initial state and parameters; the structure is at rest.

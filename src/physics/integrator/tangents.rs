@@ -7,10 +7,10 @@ use std::fmt::Debug;
 use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangent::{Following, TangentStiffness};
 use crate::statistics::DeclaredNoise;
+use crate::structure::assemblies::StoreyReadings;
 use crate::structure::elements::{ElementReading, Elements};
 use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 use crate::structure::matrix::{Matrix, Vector};
-use crate::structure::substructures::StoreyReadings;
 use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 
 /// `K_t` of the tangent form.

@@ -17,8 +17,8 @@ use crate::integrator::solver::FrameSolver;
 use crate::integrator::state::FrameState;
 use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
+use crate::structure::assemblies::StoreyReadings;
 use crate::structure::elements::Elements;
-use crate::structure::substructures::StoreyReadings;
 use crate::structure::{FrameMatrices, SymmetricBand, widen};
 
 /// The settings with which a frame is integrated.

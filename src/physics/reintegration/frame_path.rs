@@ -13,8 +13,9 @@
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::statistics::DeclaredNoise;
+use crate::structure::assemblies::{Assemblies, StoreyReadings, assembly_drifts};
 use crate::structure::elements::ElementReading;
-use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures, assembly_drifts};
+use crate::structure::substructures::Substructures;
 use crate::structure::{SymmetricBand, storeys_of};
 
 /// One step of the record, one entry per floor or axis.

@@ -4,6 +4,7 @@
 //! A structure has one degree of freedom or many: M Ẍ + C Ẋ + R = F(t), under loads or ground motion, F = −M ι `ü_g` (Melo et al. 2006,
 //! eqs. 1 and 1a). A step never costs n³: matrices are banded, and a factorisation is kept until a stiffness changes.
 
+pub mod assemblies;
 pub mod beam;
 pub mod cell_damping;
 mod damping;

@@ -1,7 +1,7 @@
 //! The peak absolute displacement and force of the channels of a run, from its tables. In: a record. Out: numbers.
 
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::elements::ElementReading;
-use psd_physics::structure::substructures::Assemblies;
 use psd_plan::Plan;
 use psd_plan::record::{FloorMotion, ImpactHistory, UnloadHistory, Unloaded};
 

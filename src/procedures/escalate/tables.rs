@@ -5,7 +5,7 @@ use std::iter::once;
 use crate::procedures::impact;
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::procedures::impact::block as results;
 use psd_plan::record::{EscalateHistory, Rest, SeriesImpact};
 use psd_plan::schema::columns::{self, column};

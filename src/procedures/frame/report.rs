@@ -5,7 +5,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::budget_table;
 use crate::report::{Run, number};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::{SymmetricBand, storeys_of, widen};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors, Modes, NamedResult, ProcedureRecord};

@@ -2,7 +2,7 @@
 
 use crate::run::session::Session;
 use psd_physics::statistics::noisy_largest::NoisyLargest;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 

@@ -4,7 +4,7 @@
 
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Column, Table, numeric, written};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{Floors, FloorsAt};
 use psd_plan::schema::Column as SchemaColumn;
 use psd_plan::schema::columns;

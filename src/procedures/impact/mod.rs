@@ -11,5 +11,6 @@ pub(crate) mod report;
 pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod setting;
+mod summary;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;

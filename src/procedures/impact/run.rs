@@ -3,8 +3,9 @@
 //! impact of the plan. Out: every step, and the results that follow from them. The equations are in `physics`; this file only connects
 //! them with the rig.
 
-use super::results::{StruckSummary, observe, results};
+use super::results::{observe, results};
 use super::setting::{Setting, StruckStructure};
+use super::summary::StruckSummary;
 use super::uncertainty::{RecordedRun, UncertaintyInputs};
 use crate::procedures::frame::results::{drifted_to, observe_drift};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;

@@ -9,7 +9,7 @@ use crate::procedures::frame::tables::{
 };
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
 use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{FloorStep, ImpactHistory, ImpactStep, StruckFrame};
 use psd_plan::schema::{Column, columns};
 

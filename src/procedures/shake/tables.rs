@@ -5,7 +5,7 @@ use crate::procedures::frame::tables::{
 };
 use crate::report::tables::Table;
 use crate::report::tables::TableColumn::{self, Integer, Number};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{ShakeHistory, ShakeStep};
 use psd_plan::schema::columns::{self, column};
 use psd_text::units::Dimension;

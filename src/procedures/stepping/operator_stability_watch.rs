@@ -7,9 +7,9 @@ use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit
 use crate::run::session::{Session, first};
 use psd_physics::impact::ImpactInput;
 use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::assemblies::StoreyReadings;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::StoreyReadings;
 use psd_physics::structure::{Matrices, drifts, shears, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::{Integrator, Mode, Stepping};

@@ -7,9 +7,9 @@
 
 use super::tracking::delay;
 use crate::procedures::common::predicted::row;
-use psd_physics::statistics::samples::peak;
 use psd_physics::statistics::DeclaredNoise;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::statistics::samples::peak;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{Floors, Modes};
 use psd_plan::{Link, Mode, Plan, Stepping};
 use psd_text::units::Dimension;

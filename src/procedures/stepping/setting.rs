@@ -10,9 +10,9 @@ use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::tangents::Tangents;
 use psd_physics::structure::Damping;
+use psd_physics::structure::assemblies::StoreyReadings;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::StoreyReadings;
 use psd_plan::record::EventKind;
 use psd_plan::schema::{frames, methods};
 use psd_plan::{

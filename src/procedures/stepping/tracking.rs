@@ -4,9 +4,9 @@
 
 use crate::procedures::facts::Delay;
 use crate::run::session::Session;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
 use psd_plan::formula::NoResults;
 use psd_plan::record::{EventKind, NamedResult};

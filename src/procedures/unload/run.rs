@@ -12,8 +12,8 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::statistics::samples::peak;
+use psd_physics::structure::assemblies::on_the_rig;
 use psd_physics::structure::frame_properties::FrameProperties;
-use psd_physics::structure::substructures::on_the_rig;
 use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use psd_plan::procedures::unload::block as schema;
 use psd_plan::record::{

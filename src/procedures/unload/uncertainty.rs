@@ -8,7 +8,7 @@
 
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use psd_physics::integrator::tangent::NOISE_MULTIPLE;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::{Loaded, Unloading};
 use psd_physics::tracking::trajectory::longest_travel;
 use psd_plan::record::{Rest, UnloadStep};

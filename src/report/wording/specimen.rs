@@ -2,11 +2,11 @@
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
 use crate::report::number::percent;
+use psd_physics::structure::assemblies::{Assemblies, on_the_rig};
 use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
-use psd_physics::structure::substructures::{Assemblies, on_the_rig};
 use psd_plan::scaled::{at_scale, members, numbers_on_the_rig};
 use psd_plan::schema::behaviours;
 use psd_plan::{

@@ -5,8 +5,8 @@ use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
 use psd_physics::structure::SymmetricBand;
+use psd_physics::structure::assemblies::on_the_rig;
 use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
-use psd_physics::structure::substructures::on_the_rig;
 use psd_plan::{Behaviour, Frame, Member, Specimen};
 
 /// Springs between the axes and the ground.

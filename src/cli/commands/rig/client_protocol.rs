@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use crate::exit::Failure;
 use psd::remote;
 use psd::remote::Protocol;
-use psd_physics::structure::substructures::stiffness_on_the_rig;
+use psd_physics::structure::assemblies::stiffness_on_the_rig;
 use psd_plan::Plan;
 use psd_rig::VirtualRig;
 use psd_text::units::{Dimension, unit};

@@ -7,7 +7,7 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
 use crate::check::wording::axes_of;
 use crate::codes::E615;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
 use psd_text::count::counted_in_words;

@@ -7,7 +7,7 @@ use crate::check::checker::Checker;
 use crate::check::wording::shown;
 use crate::codes::{W707, W708, W711, W727, W734, W735};
 use crate::syntax::ast::{Expr, ExprKind};
-use psd_physics::structure::substructures::stiffness_on_the_rig;
+use psd_physics::structure::assemblies::stiffness_on_the_rig;
 use psd_plan::schema::rig as schema;
 use psd_plan::{Calibration, DeviceLink, Dialect, Interval, PortPlan, PretestCheck, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};

@@ -7,7 +7,7 @@ use crate::check::checker::Checker;
 use crate::check::wording::shown;
 use crate::codes::{E667, W732, W742};
 use crate::syntax::ast::{Expr, ExprKind};
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::formula::{Formula, Function, ProcedureId, ResultPart, ResultReference};
 use psd_plan::schema::{Kind, Possible};
 use psd_plan::{

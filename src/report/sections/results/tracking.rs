@@ -5,7 +5,7 @@ use super::actuators;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::wording::actuators as wording;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::Frame;
 use psd_plan::record::ProcedureRecord;

@@ -4,8 +4,8 @@
 use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::SpecimenModel;
+use psd_physics::structure::assemblies::{assembly_drifts, on_the_rig};
 use psd_physics::structure::cell_damping::CellDamping;
-use psd_physics::structure::substructures::{assembly_drifts, on_the_rig};
 use psd_plan::{Behaviour, Frame};
 
 #[derive(Debug)]

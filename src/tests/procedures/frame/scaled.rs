@@ -8,7 +8,7 @@ use super::hybrid::{
 use crate::procedures::unload::tables;
 use crate::tests::testing::run_unwatched;
 use polars::prelude::Column;
-use psd_physics::structure::substructures::Assemblies;
+use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::formula::Formula::Constant;
 use psd_plan::record::{Event, FloorMotion, Floors as _, History, Outcome, Record};
 use psd_plan::{
