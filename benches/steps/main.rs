@@ -197,7 +197,7 @@ fn study<'a>(name: &str, law: ContactLaw, specimen: &SpecimenModel, wanted: Want
 fn building<'a, S: RestoringForce + Copy + 'a>(
     name: &str,
     storeys: usize,
-    tangents: Tangents,
+    (integrator, tangents): (Integrator, Tangents),
     storey: S,
 ) -> Case<'a> {
     let mass = SymmetricBand::diagonal(&vec![1500.0; storeys]);
@@ -216,7 +216,7 @@ fn building<'a, S: RestoringForce + Copy + 'a>(
         elements: None,
         matrices: &matrices,
         operator_stiffness: &matrices.stiffness,
-        integrator: Integrator::Tangent,
+        integrator,
         i_modification: false,
         tangents,
         time_step: 2e-3,
@@ -259,15 +259,26 @@ fn main() {
         yield_force: 2e4,
         post_yield_ratio: 0.05,
     });
-    let secants = Tangents::Storeys { largest_ratio: 2.0 };
+    let initial = (Integrator::Tangent, Tangents::Initial);
+    let secants = (
+        Integrator::Tangent,
+        Tangents::Storeys { largest_ratio: 2.0 },
+    );
+    let alpha_os = (Integrator::AlphaOs { alpha: -0.05 }, Tangents::Initial);
     let mut cases: Vec<Case> = Vec::new();
     cases.extend(recorded("elastic", &SPECIMEN));
     cases.extend(recorded("bilinear", &yielding()));
     cases.extend(bare());
     cases.extend(linear());
     for storeys in [2, 10, 100, 1000] {
-        cases.push(building("elastic", storeys, Tangents::Initial, storey));
+        cases.push(building("elastic", storeys, initial, storey));
         cases.push(building("bilinear", storeys, secants, yielding_storey));
+        cases.push(building(
+            "bilinear, α-OS",
+            storeys,
+            alpha_os,
+            yielding_storey,
+        ));
     }
     let limited = ContactLaw::Limit { force: 100.0 };
     // A study of the largest displacement alone, and one of everything.

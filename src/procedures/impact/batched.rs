@@ -12,6 +12,7 @@ use psd_physics::impact::batch::{self, Batched, Reach};
 use psd_physics::impact::summary::{ImpactEnding, Wanted};
 use psd_physics::impact::{ImpactState, Sink};
 use psd_physics::integrator::state::State;
+use psd_physics::relaxation::relaxation_state::RelaxationState;
 use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
@@ -78,7 +79,9 @@ impl BatchedImpact {
         let specimen = &whole.specimens[plan.specimen];
         let behaviour = specimen.behaviour.as_ref()?;
         let undamped = specimen.damping == 0.0 && specimen.coulomb == 0.0;
-        if !(is_ideal(whole) && undamped && plan.stepping.mode == Mode::RampAndHold) {
+        let relaxes = !RelaxationState::new(behaviour).is_none();
+        let stops = plan.stepping.mode == Mode::RampAndHold;
+        if !(is_ideal(whole) && undamped && stops) || relaxes {
             return None;
         }
         let striker = &whole.strikers[plan.striker];

@@ -172,6 +172,13 @@ fn a_plan_that_reads_more_than_a_batch_gives_runs_one_by_one() {
             false,
         ),
         (usual() + "\nunload back { }", false),
+        (
+            usual().replace(
+                "elastic(stiffness: 300 N/m)",
+                "maxwell(of: elastic(stiffness: 300 N/m), stiffness: 200 N/m, time_constant: 0.1 s)",
+            ),
+            false,
+        ),
     ] {
         let Ok(studied) = std::panic::catch_unwind(|| Studied::of(&text, 1)) else {
             panic!("{text}");
