@@ -1,10 +1,10 @@
 //! Stiffness from readings in motion, which include the force of dampers: F = F₀ + K·d + c·v. In: displacement and force, reading by
 //! reading, evenly in time. Out: K with its standard error, where the readings determine it.
 
-use psd_physics::statistics::samples::peak;
 use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Vector3};
+use psd_physics::statistics::samples::peak;
 
 /// Readings of one fit, at most and at least: enough to estimate the scatter about the plane, few enough to follow a stiffness that
 /// changes.

@@ -30,6 +30,17 @@ pub(crate) struct Balance {
     pub input: f64,
 }
 
+impl Balance {
+    /// Energy error over its reference.
+    fn relative_error(&self) -> f64 {
+        if self.error == 0.0 {
+            0.0
+        } else {
+            self.error / self.input
+        }
+    }
+}
+
 /// Computes the steps of a structure, and keeps them.
 pub(crate) trait Stepped {
     /// The end of the last step.
@@ -191,7 +202,7 @@ impl<S: Stepped> StepsTaken<S> {
                 self.complete(&mut effective_force, session);
                 return Err(stop);
             }
-            let Balance { error, input } = self.complete(&mut effective_force, session);
+            let balance = self.complete(&mut effective_force, session);
             let Self {
                 stepped,
                 stiffer,
@@ -203,9 +214,9 @@ impl<S: Stepped> StepsTaken<S> {
             stiffer.take(reading, &session.elements_read(), before || now, session);
             struck = now;
             let (tracking, tracking_energy_error) =
-                followed.assess(monitors.tracking(), input, session);
+                followed.assess(monitors.tracking(), balance.input, session);
             let errors = Errors {
-                energy_error: if error == 0.0 { 0.0 } else { error / input },
+                energy_error: balance.relative_error(),
                 tracking,
                 tracking_energy_error,
             };
@@ -273,7 +284,7 @@ impl<S: Stepped> StepsTaken<S> {
             stepped.predict(target);
             let ended = session.step_ideally(ideal, target, reading)?;
             stepped.complete(reading);
-            let Balance { error, input } = stepped.sum_up();
+            let balance = stepped.sum_up();
             *wall_time = reading.time;
             if *keeps_steps {
                 stepped.keep(monitors.tracking(), *wall_time);
@@ -285,9 +296,8 @@ impl<S: Stepped> StepsTaken<S> {
                 let before = std::mem::replace(&mut struck, stepped.is_struck());
                 stiffer.take(reading, &[], before || struck, session);
             }
-            *assessed = Some(input);
-            let energy_error = if error == 0.0 { 0.0 } else { error / input };
-            session.guard.check_energy_error(energy_error)?;
+            *assessed = Some(balance.input);
+            session.guard.check_energy_error(balance.relative_error())?;
             session.step_passed(stepped.axes().step + stepped.before());
             if stepped.over() {
                 break;

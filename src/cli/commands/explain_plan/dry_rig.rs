@@ -1,13 +1,13 @@
 //! A simulated rig that records the range of displacement, force and speed of each procedure. In: a plan. Out: the record of a run on it,
 //! and the ranges.
 
-use psd_physics::statistics::samples::peak;
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::operator::screen::curve::Curves;
 use crate::operator::shown::Shown;
 use psd::run::{self, Inspection, Observer, StepReport};
+use psd_physics::statistics::samples::peak;
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::record::Record;
 use psd_plan::{Interval, Plan};
