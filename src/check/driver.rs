@@ -3,7 +3,7 @@
 
 use crate::procedures as slices;
 use crate::procedures::facts::Left;
-use psd_language::check::checker::Checker;
+use psd_language::check::checker::{Checker, FixedValues};
 use psd_language::check::declarations::limits::CheckedLimits;
 use psd_language::check::declared::Declared;
 use psd_language::check::rig::CheckedRig;
@@ -57,6 +57,8 @@ pub struct PlanParts {
     report: Parts<Option<Report>>,
     golden: Parts<Option<Golden>>,
     texts: Parts<Texts>,
+    /// Values that the check before left as they are for this one.
+    pub values: FixedValues,
 }
 
 /// What the `plan` block states.

@@ -313,6 +313,7 @@ impl ParsedPlan {
         checker.bound = given.bound;
         checker.real_rig = rig::real_rig_of_run(&checker, self.options.rig.as_deref());
         checker.override_fields(given.settings);
+        checker.begin_with(std::mem::take(&mut parts.values));
         let text = PlanText {
             name: &self.name,
             files: &self.files,
@@ -327,6 +328,7 @@ impl ParsedPlan {
             given.findings,
         );
         also(&checker);
+        parts.values = checker.fixed_values();
         let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
         let misspelt: Vec<Span> = misspelt.copied().collect();
         let diagnostics = driver::reportable(checker.diagnostics, &misspelt, checker.explained);

@@ -23,13 +23,16 @@ pub fn assess_condition(
     results: &dyn Results,
 ) -> ConditionOutcome {
     let own = decide(condition, rule, results);
+    let in_own_steps = rule == DecisionRule::ValueAlone || is_equality(condition);
+    if own.value.is_none() || in_own_steps {
+        return own;
+    }
     let mut references = Vec::new();
     condition.collect_references(&mut references);
     let follows = sources_of(&references, results)
         .into_iter()
         .any(|source| !source.is_of_uncertainty());
-    let in_own_steps = rule == DecisionRule::ValueAlone || is_equality(condition);
-    if !follows || own.value.is_none() || in_own_steps {
+    if !follows {
         return own;
     }
     let finer = FINER.map(|weights| {

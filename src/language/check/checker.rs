@@ -30,6 +30,18 @@ pub struct Traced<T> {
     pub is_bound: bool,
 }
 
+/// Values that no bound value reaches and whose evaluation left nothing else behind, so that a check with other bound values begins
+/// with them.
+#[derive(Default)]
+pub struct FixedValues(BTreeMap<Node, Known>);
+
+/// A node that is evaluated.
+struct Known {
+    traced: Traced<Option<Typed>>,
+    /// Whether its evaluation reported nothing and read no result.
+    is_silent: bool,
+}
+
 /// One number or a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -111,7 +123,7 @@ pub struct Checker<'a> {
     reported: BTreeMap<usize, Vec<Diagnostic>>,
     /// Spans that one diagnostic explains in full.
     pub explained: Vec<Span>,
-    known: BTreeMap<Node, Traced<Option<Typed>>>,
+    known: BTreeMap<Node, Known>,
     pub used: BTreeSet<usize>,
     /// The blocks that a field or an expression names.
     pub used_blocks: BTreeSet<usize>,
@@ -273,17 +285,42 @@ impl<'a> Checker<'a> {
         requested_at: Span,
         work: impl FnOnce(&mut Self) -> Option<Typed>,
     ) -> Option<Typed> {
-        if let Some(known) = self.known.get(&node) {
-            self.reads_bound |= known.is_bound;
-            return known.value.clone();
+        if let Some(Known { traced, .. }) = self.known.get(&node) {
+            self.reads_bound |= traced.is_bound;
+            return traced.value.clone();
         }
         self.guarded(node, requested_at, |checker| {
+            let before = checker.left_behind();
             let traced = checker
                 .traced(|checker| work(checker).and_then(|typed| checker.of_bounded_size(typed)));
             let value = traced.value.clone();
-            checker.known.insert(node, traced);
+            let is_silent = checker.left_behind() == before;
+            checker.known.insert(node, Known { traced, is_silent });
             value
         })
+    }
+
+    /// Begins with the values of the check before, of the same plan without warnings.
+    pub fn begin_with(&mut self, fixed: FixedValues) {
+        self.known = fixed.0;
+    }
+
+    /// The values with which the next check may begin.
+    pub fn fixed_values(&mut self) -> FixedValues {
+        let mut known = std::mem::take(&mut self.known);
+        known.retain(|_, known| {
+            known.is_silent && !known.traced.is_bound && known.traced.value.is_some()
+        });
+        FixedValues(known)
+    }
+
+    /// The numbers of diagnostics and of results read so far.
+    const fn left_behind(&self) -> [usize; 3] {
+        [
+            self.diagnostics.len(),
+            self.read.len(),
+            self.list_entries_read.len(),
+        ]
     }
 
     /// Does `work`, and finds whether it reads a value that is bound from outside the plan.
@@ -330,7 +367,7 @@ impl<'a> Checker<'a> {
                 .map(|node| self.describe(*node))
                 .collect();
             for node in self.stack[start..].iter().copied() {
-                self.known.insert(node, Traced::unknown());
+                self.known.insert(node, Known::unknown());
             }
             return self.fail(CircularDefinition {
                 cycle: &cycle,
@@ -345,7 +382,7 @@ impl<'a> Checker<'a> {
                     most: DEEPEST_VALUES,
                 });
             }
-            self.known.insert(node, Traced::unknown());
+            self.known.insert(node, Known::unknown());
             return None;
         }
         self.stack.push(node);
@@ -398,6 +435,16 @@ impl<'a> Checker<'a> {
                     .map_or_else(|| declared.kind.words(), |name| name.node.clone());
                 (format!("{owner}.{}", key.node), key.span)
             }
+        }
+    }
+}
+
+impl Known {
+    /// Something with an error.
+    const fn unknown() -> Self {
+        Self {
+            traced: Traced::unknown(),
+            is_silent: false,
         }
     }
 }

@@ -368,7 +368,7 @@ impl Field {
     #[must_use]
     pub fn default_number(&self) -> Option<f64> {
         match self.presence {
-            Presence::Default { number, unit: "" } => Some(number),
+            Presence::Default { number, unit } if number == 0.0 || unit.is_empty() => Some(number),
             Presence::Default { number, unit } => psd_text::units::unit::parse(unit)
                 .ok()
                 .map(|unit| number * unit.factor),

@@ -131,13 +131,15 @@ impl BatchedImpact {
                 .is_none_or(|(_, part)| *part(&mut wanted))
         };
         let results = of_impact(summary, &history).chain(of_steps(&history));
+        let mut known = Vec::with_capacity(results.size_hint().0);
+        known.extend(results.filter(found));
         Ok(Ended {
             procedure: ProcedureRecord {
                 name: of.name.clone(),
                 kind: of.kind.keyword(),
                 complete: stop.is_none(),
                 inputs: Vec::new(),
-                results: results.filter(found).collect(),
+                results: known,
                 history: History::Impact(history),
                 axial: Vec::new(),
             },
@@ -208,12 +210,12 @@ const fn without_steps(
     }
 }
 
-/// How impacts of one procedure end, in their order.
+/// How impacts of one procedure end, in their order. The record of each is made when it is read.
 pub(crate) fn run(
     of: &Procedure,
-    impacts: &[BatchedImpact],
+    impacts: Vec<BatchedImpact>,
     wanted: Wanted,
-) -> Vec<Result<Ended, Leaves>> {
+) -> impl Iterator<Item = Result<Ended, Leaves>> {
     let bounds = |limits: &Limits| {
         [limits.displacement, limits.force, limits.increment]
             .iter()
@@ -223,8 +225,7 @@ pub(crate) fn run(
         reach: impacts.iter().any(|impact| bounds(&impact.limits)),
         ..wanted
     };
-    let mut found: Vec<Result<Ended, Leaves>> =
-        impacts.iter().map(|_| Err(Leaves::NeedsRig)).collect();
+    let mut found: Vec<Option<Batched>> = impacts.iter().map(|_| None).collect();
     let mut left: Vec<usize> = (0..impacts.len()).collect();
     while let Some(first) = left.first() {
         let (until, steps) = (impacts[*first].until, impacts[*first].steps);
@@ -239,13 +240,17 @@ pub(crate) fn run(
             .into_iter()
             .zip(batch::run(&batch, Some(until), steps, wanted))
         {
-            if let Ok(result) = result {
-                found[at] = impacts[at].ended(of, &result, wanted);
-            }
+            found[at] = result.ok();
         }
         left = others;
     }
-    found
+    impacts
+        .into_iter()
+        .zip(found)
+        .map(move |(impact, found)| match found {
+            Some(found) => impact.ended(of, &found, wanted),
+            None => Err(Leaves::NeedsRig),
+        })
 }
 
 /// Whether every reading of the rig is the target and the force there, and no limit depends on more than the reach of an impact.

@@ -60,8 +60,8 @@ impl Batch {
             outcome,
             drift: None,
         };
-        let impacts = batched::run(&plan.procedures[0], &self.impacts, wanted);
-        let records = impacts.into_iter().map(move |found| found.map(&record));
+        let impacts = batched::run(&plan.procedures[0], self.impacts, wanted);
+        let records = impacts.map(move |found| found.map(&record));
         self.numbers.into_iter().zip(records)
     }
 }
