@@ -34,8 +34,8 @@ use psd_rig::emulator::Log;
 use shrink::shrunk;
 use tally::Tally;
 
-/// Lives of the test command.
-const SEEDS: u64 = 2_500;
+/// Lives of the test command. Half of them meet every fault, change and law, and the defect that is found last is found in 260.
+const SEEDS: u64 = 1_250;
 
 /// A number from the environment.
 fn number(name: &str) -> Option<u64> {

@@ -11,7 +11,7 @@ mod procedures;
 mod resumed;
 mod words_on_disk;
 
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
@@ -44,6 +44,8 @@ pub(super) struct Stand {
     last: LastMove,
     /// Every target that was executed, for each axis \[m\].
     pub(super) carried_out: Vec<Vec<f64>>,
+    /// Motions, pauses and readings so far.
+    pub(super) calls: usize,
 }
 
 impl RestingRig {
@@ -59,9 +61,17 @@ impl RestingRig {
                 offered: None,
                 last,
                 carried_out: Vec::new(),
+                calls: 0,
             })),
             0,
         )
+    }
+
+    /// The stand, for one call more.
+    fn called(&self) -> RefMut<'_, Stand> {
+        let mut stand = self.0.borrow_mut();
+        stand.calls += 1;
+        stand
     }
 }
 
@@ -85,7 +95,7 @@ impl Rig for RestingRig {
         })
     }
     fn execute(&mut self) -> Result<(), RigFault> {
-        let mut stand = self.0.borrow_mut();
+        let mut stand = self.called();
         let target = stand.offered.take().unwrap();
         stand.carried_out.push(target.clone());
         stand.last = LastMove {
@@ -95,11 +105,11 @@ impl Rig for RestingRig {
         stand.rig.execute()
     }
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.0.borrow_mut().rig.pause(seconds)
+        self.called().rig.pause(seconds)
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
         self.1 += 1;
-        self.0.borrow_mut().rig.read()
+        self.called().rig.read()
     }
     fn traverse(
         &mut self,
@@ -110,8 +120,7 @@ impl Rig for RestingRig {
     ) -> Result<(), RigFault> {
         // The rig cannot keep up: every fifth reading is late.
         let mut due = 0_usize;
-        self.0
-            .borrow_mut()
+        self.called()
             .rig
             .traverse(targets, velocity, samples, &mut |reading| {
                 due += 1;
@@ -130,7 +139,7 @@ impl Rig for RestingRig {
     ) -> Result<(), RigFault> {
         // Four of five readings are logged; the late ones also count as done.
         let mut due = cut_off.done + cut_off.done.saturating_sub(1) / 4;
-        self.0.borrow_mut().rig.traverse_on(
+        self.called().rig.traverse_on(
             &CutOff {
                 done: due,
                 ..*cut_off
@@ -152,7 +161,7 @@ impl Rig for RestingRig {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.0.borrow_mut().rig.follow_paths(paths, samples, each)
+        self.called().rig.follow_paths(paths, samples, each)
     }
     fn resume_paths(
         &mut self,
@@ -161,10 +170,7 @@ impl Rig for RestingRig {
         done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.0
-            .borrow_mut()
-            .rig
-            .resume_paths(paths, samples, done, each)
+        self.called().rig.resume_paths(paths, samples, done, each)
     }
     fn hold(&mut self) {
         self.0.borrow_mut().rig.hold();
