@@ -40,11 +40,7 @@ impl<T> Parts<T> {
             checker.list_entries_read.extend_from_slice(&reads.entries);
             return;
         }
-        let [found, results, entries] = [
-            checker.diagnostics.len(),
-            checker.read.len(),
-            checker.list_entries_read.len(),
-        ];
+        let [found, results, entries] = checker.left_behind();
         let Traced { value, is_bound } = checker.traced(work);
         let is_fixed = !is_bound && checker.diagnostics.len() == found;
         let fixed = is_fixed.then(|| Reads {

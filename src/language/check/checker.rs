@@ -38,8 +38,8 @@ pub struct FixedValues(BTreeMap<Node, Known>);
 /// A node that is evaluated.
 struct Known {
     traced: Traced<Option<Typed>>,
-    /// Whether its evaluation reported nothing and read no result.
-    is_silent: bool,
+    /// Whether it has a value that no bound value reaches, and its evaluation reported nothing and read no result.
+    is_fixed: bool,
 }
 
 /// One number or a list.
@@ -294,8 +294,8 @@ impl<'a> Checker<'a> {
             let traced = checker
                 .traced(|checker| work(checker).and_then(|typed| checker.of_bounded_size(typed)));
             let value = traced.value.clone();
-            let is_silent = checker.left_behind() == before;
-            checker.known.insert(node, Known { traced, is_silent });
+            let is_fixed = !traced.is_bound && value.is_some() && checker.left_behind() == before;
+            checker.known.insert(node, Known { traced, is_fixed });
             value
         })
     }
@@ -308,14 +308,12 @@ impl<'a> Checker<'a> {
     /// The values with which the next check may begin.
     pub fn fixed_values(&mut self) -> FixedValues {
         let mut known = std::mem::take(&mut self.known);
-        known.retain(|_, known| {
-            known.is_silent && !known.traced.is_bound && known.traced.value.is_some()
-        });
+        known.retain(|_, known| known.is_fixed);
         FixedValues(known)
     }
 
-    /// The numbers of diagnostics and of results read so far.
-    const fn left_behind(&self) -> [usize; 3] {
+    /// The numbers of diagnostics, of results and of entries of their lists that were read so far.
+    pub const fn left_behind(&self) -> [usize; 3] {
         [
             self.diagnostics.len(),
             self.read.len(),
@@ -444,7 +442,7 @@ impl Known {
     const fn unknown() -> Self {
         Self {
             traced: Traced::unknown(),
-            is_silent: false,
+            is_fixed: false,
         }
     }
 }

@@ -368,6 +368,7 @@ impl Field {
     #[must_use]
     pub fn default_number(&self) -> Option<f64> {
         match self.presence {
+            // Zero is zero in every unit.
             Presence::Default { number, unit } if number == 0.0 || unit.is_empty() => Some(number),
             Presence::Default { number, unit } => psd_text::units::unit::parse(unit)
                 .ok()

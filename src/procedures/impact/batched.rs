@@ -131,15 +131,16 @@ impl BatchedImpact {
                 .is_none_or(|(_, part)| *part(&mut wanted))
         };
         let results = of_impact(summary, &history).chain(of_steps(&history));
-        let mut known = Vec::with_capacity(results.size_hint().0);
-        known.extend(results.filter(found));
+        // A filter does not state how many it leaves, and `collect` would move the list again and again.
+        let mut wanted_results = Vec::with_capacity(results.size_hint().0);
+        wanted_results.extend(results.filter(found));
         Ok(Ended {
             procedure: ProcedureRecord {
                 name: of.name.clone(),
                 kind: of.kind.keyword(),
                 complete: stop.is_none(),
                 inputs: Vec::new(),
-                results: known,
+                results: wanted_results,
                 history: History::Impact(history),
                 axial: Vec::new(),
             },

@@ -226,16 +226,11 @@ pub fn parse(token: &str) -> Result<Unit, UnitError> {
                 start,
             });
         }
-        let (factor, dimension) = if exponent == Exponent::whole(1) {
-            (unit.factor, unit.dimension)
-        } else {
-            (
-                power(unit.factor, exponent),
-                unit.dimension
-                    .to_power(exponent)
-                    .ok_or(UnitError::TooLarge)?,
-            )
-        };
+        let factor = power(unit.factor, exponent);
+        let dimension = unit
+            .dimension
+            .to_power(exponent)
+            .ok_or(UnitError::TooLarge)?;
         result = if divide {
             Unit {
                 factor: result.factor / factor,

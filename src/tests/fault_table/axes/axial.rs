@@ -298,7 +298,8 @@ fn a_force_that_the_plan_does_not_know_is_a_fault() {
     assert_eq!(load_of(&ended.emulator), LOAD);
 }
 
-/// Killed at any write, and after three times the watchdog of 3 s without a host: the load is held, no motion is repeated, and the run ends as the whole one.
+/// Killed at any write, and after three times the watchdog of 3 s without a host: the load is held, no motion is repeated, and the run ends
+/// as the whole one.
 #[test]
 fn killed_anywhere_it_goes_on_under_its_load() {
     let plan = short();
