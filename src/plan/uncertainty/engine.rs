@@ -111,6 +111,8 @@ pub struct Propagation<'a, P> {
     pub steps: u64,
     /// The values that the run reported, if it is integrated in time steps.
     pub reported: Option<Vec<f64>>,
+    /// The results with unperturbed readings and inputs; None: they are evaluated.
+    pub nominal: Option<Evaluation>,
 }
 
 impl<P: Evaluate> Propagation<'_, P> {
@@ -145,10 +147,13 @@ impl<P: Evaluate> Propagation<'_, P> {
             .map(Perturbed::Source)
             .chain(trials)
             .collect();
-        let nominal = self.evaluate.evaluate(
-            &self.instruments.perturbed(&[], None),
-            &self.evaluate.inputs(&[])?,
-        );
+        let nominal = match &self.nominal {
+            Some(nominal) => nominal.clone(),
+            None => self.evaluate.evaluate(
+                &self.instruments.perturbed(&[], None),
+                &self.evaluate.inputs(&[])?,
+            ),
+        };
         let propagation = Prepared {
             propagation: self,
             budget,

@@ -5,7 +5,7 @@ use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
 use psd_plan::formula::{Formula, ProcedureId, Results, UncertaintyStatus};
 use psd_plan::uncertainty::engine::{
-    Contributions, Evaluate, Progress, Propagation, Shifts, Unknown,
+    Contributions, Evaluate, Evaluation, Progress, Propagation, Shifts, Unknown,
 };
 use psd_plan::uncertainty::{InstrumentUncertainty, Moved, Source, sources_of};
 use psd_plan::{DeclaredNoise, Plan};
@@ -66,14 +66,13 @@ impl<'run> UncertainRun<'run> {
             .map_err(|stop| out_of_bounds(&stop))
     }
 
-    /// Contributions of the inputs and of the instruments on so many `axes` to the `reported` values, for a run of so many recorded steps.
+    /// Contributions of the inputs and of the instruments on so many `axes` to the values of a recorded run.
     pub(crate) fn contributions<P: Evaluate>(
         &self,
         evaluate: &P,
         axes: usize,
         inputs: Vec<Source>,
-        steps: usize,
-        reported: Vec<f64>,
+        recorded: RecordedValues,
         progress: Progress<'_, Stop>,
     ) -> Result<Contributions, Unknown<Stop>> {
         let propagation = Propagation {
@@ -82,11 +81,22 @@ impl<'run> UncertainRun<'run> {
             evaluate,
             instruments: &self.instruments(axes),
             inputs,
-            steps: (steps * axes) as u64,
-            reported: Some(reported),
+            steps: (recorded.steps * axes) as u64,
+            reported: Some(recorded.reported),
+            nominal: recorded.nominal,
         };
         propagation.contributions(progress)
     }
+}
+
+/// The values of a run along its recorded path.
+pub(crate) struct RecordedValues {
+    /// Number of recorded steps.
+    pub steps: usize,
+    /// As the run reported them.
+    pub reported: Vec<f64>,
+    /// As they follow from the recorded path; None: they are evaluated.
+    pub nominal: Option<Evaluation>,
 }
 
 /// Sources of the results and statements that `formulas` read, followed by the `stated` ones with their uncertainties.

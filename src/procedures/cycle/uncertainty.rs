@@ -147,6 +147,7 @@ pub(crate) fn propagate(
         inputs: Vec::new(),
         steps: loops.history.steps.len() as u64,
         reported: None,
+        nominal: None,
     };
     let layout = loops.layout();
     // Inputs have no bounds here, and no one waits for progress.

@@ -2,7 +2,7 @@
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground motion.
 
 use super::setting::Setting;
-use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
+use crate::procedures::common::perturbed_inputs::{LEADS_ELSEWHERE, RecordedValues};
 use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there, with_noise};
@@ -103,8 +103,11 @@ pub(crate) fn propagate(
             &evaluate,
             axes,
             sources,
-            history.steps.len(),
-            reported,
+            RecordedValues {
+                steps: history.steps.len(),
+                reported,
+                nominal: None,
+            },
             progress,
         )?,
         results,

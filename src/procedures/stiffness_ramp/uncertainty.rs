@@ -188,6 +188,7 @@ pub(crate) fn propagate(
         inputs: Vec::new(),
         steps: readings.steps.len() as u64,
         reported: None,
+        nominal: None,
     };
     // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = propagation.contributions::<Infallible>(&mut |_, _| Ok(())) {

@@ -400,7 +400,7 @@ impl<'a> Retrace<'a> {
     /// Changes to the piece of the branch on which the position of an earlier reversal is passed.
     fn rejoin(&mut self, position: f64) {
         let path = self.path;
-        let branch = path.branches[self.branch()];
+        let branch = &path.branches[self.branch()];
         while self.piece < branch.last_piece
             && let Some(left) = path.pieces[self.piece + 1].rejoins
             && (position - self.turns[left]) * branch.direction > 0.0

@@ -64,6 +64,7 @@ fn propagation(evaluate: &Formula, errors: ReadingErrors) -> Result<Vec<Contribu
         inputs,
         steps: 10,
         reported: None,
+        nominal: None,
     };
     match propagation.contributions::<()>(&mut |_, _| Ok(())) {
         Ok(mut found) => Ok(found.remove(0)),
@@ -187,6 +188,7 @@ fn finer_steps_are_those_of_every_procedure() {
             inputs: vec![Source::TimeStep(Refinement::Half)],
             steps: 10,
             reported,
+            nominal: None,
         };
         let Ok(found) = propagation.contributions::<()>(&mut |_, _| Ok(())) else {
             panic!("not evaluated")

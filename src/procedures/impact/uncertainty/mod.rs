@@ -8,7 +8,7 @@ use super::contact;
 use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
 use crate::procedures::common::perturbed_inputs::{
-    LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
+    LEADS_ELSEWHERE, RecordedValues, UncertainRun, uncertain_inputs,
 };
 use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
@@ -88,8 +88,11 @@ impl ImpactUncertainty<'_> {
             &evaluate,
             1,
             self.sources()?,
-            steps.len(),
-            reported,
+            RecordedValues {
+                steps: steps.len(),
+                reported,
+                nominal: Some(RecordedImpact::evaluation(&unperturbed, setting)),
+            },
             progress,
         )?;
         give_resolved(setting.input.law, recorded, &layout, contributions, results);
@@ -253,6 +256,15 @@ impl RecordedImpact<'_, '_> {
             readings,
         )
     }
+
+    fn evaluation(found: &Outcome, setting: &Setting) -> Evaluation {
+        let with_step = |values: &ImpactValues| flat(numbers(values, setting));
+        Evaluation {
+            values: with_step(&found.values),
+            before_departure: found.before_departure.as_ref().map(with_step),
+            farthest: found.farthest,
+        }
+    }
 }
 
 impl Evaluate for RecordedImpact<'_, '_> {
@@ -290,15 +302,10 @@ impl Evaluate for RecordedImpact<'_, '_> {
     }
 
     fn evaluate(&self, readings: &Perturbation, setting: &Setting) -> Evaluation {
-        let Ok(found) = self.run(setting, readings) else {
-            return Evaluation::none(self.length);
-        };
-        let with_step = |values: &ImpactValues| flat(numbers(values, setting));
-        Evaluation {
-            values: with_step(&found.values),
-            before_departure: found.before_departure.as_ref().map(with_step),
-            farthest: found.farthest,
-        }
+        self.run(setting, readings).map_or_else(
+            |_| Evaluation::none(self.length),
+            |found| Self::evaluation(&found, setting),
+        )
     }
 }
 

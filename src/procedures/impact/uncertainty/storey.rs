@@ -5,7 +5,7 @@ use super::super::contact;
 use super::super::results::re_integrated;
 use super::super::setting::Setting;
 use super::{counted, give_resolved, same, striker_sources};
-use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
+use crate::procedures::common::perturbed_inputs::{LEADS_ELSEWHERE, RecordedValues};
 use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there, with_noise};
@@ -97,8 +97,11 @@ pub(crate) fn propagate(
         &evaluate,
         axes,
         sources,
-        history.len(),
-        reported,
+        RecordedValues {
+            steps: history.len(),
+            reported,
+            nominal: None,
+        },
         progress,
     )?;
     if let Some(duration) = index_of(&layout, schema::CONTACT_DURATION) {
