@@ -16,7 +16,9 @@ use psd_physics::relaxation::relaxation_state::RelaxationState;
 use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{History, ImpactHistory, NamedResult, Outcome, ProcedureRecord};
+use psd_plan::record::{
+    History, Identity, ImpactHistory, NamedResult, Outcome, ProcedureRecord, Record,
+};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
 use psd_rig::{DeclaredNoise, RigFault, fault_of_ideal_step};
@@ -103,8 +105,8 @@ impl BatchedImpact {
         })
     }
 
-    /// Its outcome, unless the rig has to find it.
-    fn ended(&self, of: &Procedure, result: &Batched, mut wanted: Wanted) -> Result<Ended, Leaves> {
+    /// Gives a record its outcome and its `kept` results, unless the rig has to find them.
+    fn end(&self, result: &Batched, kept: &[bool], record: &mut Record) -> Result<(), Leaves> {
         let Batched {
             summary,
             ending,
@@ -124,28 +126,15 @@ impl BatchedImpact {
         let history = without_steps(self.time_step, self.critical_time_step, *ending);
         // What is known of an impact that was stopped is not a result.
         let summary = stop.is_none().then_some(summary);
-        let found = |result: &NamedResult| {
-            let mut of_every_step = OF_EVERY_STEP.iter();
-            of_every_step
-                .find(|(kind, _)| kind.name == result.name)
-                .is_none_or(|(_, part)| *part(&mut wanted))
-        };
         let results = of_impact(summary, &history).chain(of_steps(&history));
-        // A filter does not state how many it leaves, and `collect` would move the list again and again.
-        let mut wanted_results = Vec::with_capacity(results.size_hint().0);
-        wanted_results.extend(results.filter(found));
-        Ok(Ended {
-            procedure: ProcedureRecord {
-                name: of.name.clone(),
-                kind: of.kind.keyword(),
-                complete: stop.is_none(),
-                inputs: Vec::new(),
-                results: wanted_results,
-                history: History::Impact(history),
-                axial: Vec::new(),
-            },
-            outcome: stop.map_or(Outcome::Completed, |fault| Stop::Rig(fault).outcome()),
-        })
+        let results = results.zip(kept).filter(|(_, kept)| **kept);
+        let procedure = &mut record.procedures[0];
+        procedure.complete = stop.is_none();
+        procedure.results.clear();
+        procedure.results.extend(results.map(|(result, _)| result));
+        procedure.history = History::Impact(history);
+        record.outcome = stop.map_or(Outcome::Completed, |fault| Stop::Rig(fault).outcome());
+        Ok(())
     }
 
     /// The fault with which the guard stops it.
@@ -161,13 +150,6 @@ impl BatchedImpact {
             .simulate(Some(self.until), self.steps, &mut stopped);
         stopped.fault
     }
-}
-
-/// How an impact in a batch ended.
-pub(crate) struct Ended {
-    /// Of its procedure, without steps.
-    pub procedure: ProcedureRecord,
-    pub outcome: Outcome,
 }
 
 /// Why an impact leaves its batch.
@@ -211,12 +193,41 @@ const fn without_steps(
     }
 }
 
-/// How impacts of one procedure end, in their order. The record of each is made when it is read.
+/// Which results of an impact a record keeps, in their order.
+fn kept(mut wanted: Wanted) -> Vec<bool> {
+    let history = without_steps(0.0, 0.0, ImpactEnding::default());
+    let results = of_impact(None, &history).chain(of_steps(&history));
+    let is_kept = |result: NamedResult| {
+        let mut of_every_step = OF_EVERY_STEP.iter();
+        let found = of_every_step.find(|(kind, _)| kind.name == result.name);
+        found.is_none_or(|(_, part)| *part(&mut wanted))
+    };
+    results.map(is_kept).collect()
+}
+
+/// The records of impacts of one procedure on a rig, in their order and without steps: each is the same record, with other results.
 pub(crate) fn run(
     of: &Procedure,
-    impacts: Vec<BatchedImpact>,
+    rig: Identity,
+    impacts: &[BatchedImpact],
     wanted: Wanted,
-) -> impl Iterator<Item = Result<Ended, Leaves>> {
+    mut read: impl FnMut(Result<&Record, Leaves>),
+) {
+    let mut record = Record {
+        rig,
+        procedures: vec![ProcedureRecord {
+            name: of.name.clone(),
+            kind: of.kind.keyword(),
+            complete: false,
+            inputs: Vec::new(),
+            results: Vec::new(),
+            history: History::Impact(without_steps(0.0, 0.0, ImpactEnding::default())),
+            axial: Vec::new(),
+        }],
+        events: Vec::new(),
+        outcome: Outcome::Completed,
+        drift: None,
+    };
     let bounds = |limits: &Limits| {
         [limits.displacement, limits.force, limits.increment]
             .iter()
@@ -245,13 +256,14 @@ pub(crate) fn run(
         }
         left = others;
     }
-    impacts
-        .into_iter()
-        .zip(found)
-        .map(move |(impact, found)| match found {
-            Some(found) => impact.ended(of, &found, wanted),
+    let kept = kept(wanted);
+    for (impact, found) in impacts.iter().zip(found) {
+        let ended = match found {
+            Some(found) => impact.end(&found, &kept, &mut record),
             None => Err(Leaves::NeedsRig),
-        })
+        };
+        read(ended.map(|()| &record));
+    }
 }
 
 /// Whether every reading of the rig is the target and the force there, and no limit depends on more than the reach of an impact.

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::procedures;
-use crate::procedures::impact::batched::{self, BatchedImpact, Ended, Leaves};
+use crate::procedures::impact::batched::{self, BatchedImpact, Leaves};
 use psd_physics::impact::summary::Wanted;
 use psd_plan::Plan;
 use psd_plan::formula::{ResultPart, ResultReference};
@@ -46,23 +46,21 @@ impl Batch {
         self.impacts.push(impact);
     }
 
-    /// The records, with the number of each; or why a run leaves the batch. `plan`: that of any of them.
+    /// Reads the record of each with its number, or why it leaves the batch. `plan`: that of any of them.
     pub fn run(
         self,
         plan: &Plan,
         wanted: Wanted,
-    ) -> impl Iterator<Item = (usize, Result<Record, Leaves>)> {
+        mut read: impl FnMut(usize, Result<&Record, Leaves>),
+    ) {
         let rig = virtual_rig(plan).identity();
-        let record = move |Ended { procedure, outcome }| Record {
-            rig: rig.clone(),
-            procedures: vec![procedure],
-            events: Vec::new(),
-            outcome,
-            drift: None,
+        let mut numbers = self.numbers.into_iter();
+        let of_next = |record: Result<&Record, Leaves>| {
+            if let Some(number) = numbers.next() {
+                read(number, record);
+            }
         };
-        let impacts = batched::run(&plan.procedures[0], self.impacts, wanted);
-        let records = impacts.map(move |found| found.map(&record));
-        self.numbers.into_iter().zip(records)
+        batched::run(&plan.procedures[0], rig, &self.impacts, wanted, of_next);
     }
 }
 

@@ -174,19 +174,19 @@ impl<'a> Simulation<'a> {
         let Some((first, decides_all)) = first else {
             return rows;
         };
-        for (at, record) in batch.run(&first, self.wanted) {
+        batch.run(&first, self.wanted, |at, record| {
             let inputs = std::mem::take(&mut rows[at].inputs);
             let kept = match record {
-                Ok(record) if decides_all => self.readout.read(&first, &record),
+                Ok(record) if decides_all => self.readout.read(&first, record),
                 // A batch keeps no plans.
                 record => match (bind(&mut binder, &inputs), record) {
                     (Err(reason), _) => self.readout.nothing(self.plan, reason),
-                    (Ok(plan), Ok(record)) => self.readout.read(plan, &record),
+                    (Ok(plan), Ok(record)) => self.readout.read(plan, record),
                     (Ok(plan), Err(why)) => self.leaving(plan, why),
                 },
             };
             rows[at] = row(rows[at].run, inputs, kept);
-        }
+        });
         rows
     }
 

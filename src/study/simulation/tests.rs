@@ -131,7 +131,10 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
         let alone = simulated_alone(&plan);
         let mut batch = Batch::default();
         batch.add(0, impact);
-        let (_, found) = batch.run(&plan, Wanted::ALL).next().unwrap();
+        let mut found = None;
+        batch.run(&plan, Wanted::ALL, |_, record| {
+            found = Some(record.unwrap().clone());
+        });
         let found = found.unwrap();
         let names: Vec<&str> = found.procedures[0]
             .results
