@@ -20,6 +20,7 @@ pub(crate) mod document;
 pub mod figures;
 pub(crate) mod number;
 mod output;
+pub mod parquet;
 mod run;
 pub(crate) mod sections;
 pub mod status;

@@ -44,7 +44,7 @@ const IMPURE: &[&str] = &[
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["polars", "polars_io"], &["report", "study/data_set"]),
-    (&["polars_parquet"], &["study/data_set"]),
+    (&["polars_parquet"], &["report"]),
     (
         &[
             "plotters",

@@ -4,11 +4,7 @@
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use polars_io::prelude::{
-    FileMetadata, FileMetadataRef, ParallelStrategy, ParquetReader, SerReader as _,
-};
 use sha2::{Digest as _, Sha256};
 
 use super::block::{Block, StudyRow};
@@ -18,10 +14,8 @@ use super::frame;
 use super::group::Group;
 use super::metadata::{FORMAT, Metadata};
 use super::writer::{KEY_FORMAT, KEY_GROUPS, KEY_STUDY};
+use crate::report::parquet::{FileMetadata, read_metadata, row_group};
 use psd_text::digest::hex;
-
-/// Bytes that are digested together.
-const CHUNK: usize = 1 << 16;
 
 /// A data set on the disk.
 #[derive(Debug)]
@@ -29,7 +23,7 @@ pub struct Reader {
     path: PathBuf,
     metadata: Metadata,
     groups: Vec<Group>,
-    footer: FileMetadataRef,
+    footer: FileMetadata,
 }
 
 impl Reader {
@@ -53,8 +47,7 @@ impl Reader {
                 return Err(DataSetFault::new(path, reason));
             }
         }
-        let footer = ParquetReader::new(file).get_metadata().cloned();
-        let footer = footer.map_err(DataSetFault::of(path))?;
+        let footer = read_metadata(&mut file).map_err(DataSetFault::of(path))?;
         let format = footer_text(&footer, KEY_FORMAT).ok_or_else(foreign)?;
         if format != FORMAT.to_string() {
             let reason = format!("is a data set of format {format}, this program reads {FORMAT}");
@@ -128,8 +121,8 @@ impl Reader {
             DataSetFault::new(&self.path, format!("runs {first} to {last}: {reason}"))
         };
         let mut file = File::open(&self.path).map_err(DataSetFault::of(&self.path))?;
-        let found =
-            digest(&mut file, from, group.bytes).map_err(|error| fault(error.to_string()))?;
+        let bytes = read(&mut file, from, group.bytes).map_err(|error| fault(error.to_string()))?;
+        let found = hex(&Sha256::digest(&bytes));
         if found != group.sha256 {
             return Err(fault(format!(
                 "damaged: SHA-256 of bytes {from} to {} is {found}, the footer states {}",
@@ -137,14 +130,8 @@ impl Reader {
                 group.sha256
             )));
         }
-        let mut reader = ParquetReader::new(file).read_parallel(ParallelStrategy::Columns);
-        let groups = &self.footer.row_groups[at..=at];
-        reader.set_metadata(Arc::new(FileMetadata {
-            num_rows: groups[0].num_rows(),
-            row_groups: groups.to_vec(),
-            ..FileMetadata::clone(&self.footer)
-        }));
-        let frame = reader.finish().map_err(|error| fault(error.to_string()))?;
+        let frame = row_group(&bytes, from, &self.footer, at);
+        let frame = frame.map_err(|error| fault(error.to_string()))?;
         frame::block(&frame, first, &self.metadata).map_err(fault)
     }
 }
@@ -180,17 +167,10 @@ fn contradiction(footer: &FileMetadata, metadata: &Metadata, groups: &[Group]) -
     None
 }
 
-/// SHA-256 of a range of bytes.
-fn digest(file: &mut File, from: u64, bytes: u64) -> std::io::Result<String> {
+/// So many bytes from a position on.
+fn read(file: &mut File, from: u64, bytes: u64) -> std::io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(from))?;
-    let mut left = file.take(bytes);
-    let mut digest = Sha256::new();
-    let mut chunk = vec![0; CHUNK];
-    loop {
-        let read = left.read(&mut chunk)?;
-        if read == 0 {
-            return Ok(hex(&digest.finalize()));
-        }
-        digest.update(&chunk[..read]);
-    }
+    let mut read = Vec::new();
+    file.take(bytes).read_to_end(&mut read)?;
+    Ok(read)
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::report::parquet::{Encoding, ParquetFile, read_metadata, row_group};
 use polars::prelude::{Column as FrameColumn, DataFrame};
-use polars_io::prelude::{ParquetReader, ParquetWriter, SerReader as _};
 use tempfile::TempDir;
 
 use super::testing::{metadata, row};
@@ -192,8 +192,9 @@ fn a_changed_footer_is_found() {
 #[test]
 fn other_programs_read_a_data_set() {
     let folder = folder();
-    let file = std::fs::File::open(small(&folder)).unwrap();
-    let frame = ParquetReader::new(file).finish().unwrap();
+    let bytes = std::fs::read(small(&folder)).unwrap();
+    let footer = read_metadata(&mut std::io::Cursor::new(&bytes)).unwrap();
+    let frame = row_group(&bytes, 0, &footer, 0).unwrap();
     assert_eq!((frame.height(), frame.width()), (200, 8));
 }
 
@@ -202,10 +203,11 @@ fn a_file_of_another_program_is_foreign() {
     let folder = folder();
     let path = folder.path().join("foreign.parquet");
     let numbers = FrameColumn::new("run".into(), [1_u64, 2]);
-    let mut frame = DataFrame::new(2, vec![numbers]).unwrap();
-    ParquetWriter::new(std::fs::File::create(&path).unwrap())
-        .finish(&mut frame)
-        .unwrap();
+    let frame = DataFrame::new(2, vec![numbers]).unwrap();
+    let file = std::fs::File::create(&path).unwrap();
+    let mut file = ParquetFile::new(file, &frame, vec![Encoding::Plain]).unwrap();
+    file.write(&frame).unwrap();
+    file.finish(&[]).unwrap();
     assert!(fault(&path).ends_with("is a Parquet file, but not a data set of a study"));
     std::fs::write(&path, "run,speed\n0,1.0\n1,2.0\n").unwrap();
     assert!(fault(&path).contains("not a Parquet file"));

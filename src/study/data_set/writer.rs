@@ -1,20 +1,11 @@
 //! Writes a data set row group by row group. In: metadata and rows in the order of their runs. Out: `PATH.part`, which becomes `PATH` once
 //! all of it is on the disk. A file that ends early keeps the name of a part, and never has a footer.
-//!
-//! The encodings are stated here: left to Polars, they would depend on an estimate with a random seed.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{CompatLevel, PolarsError, SchemaExt as _};
-use polars_io::prelude::KeyValueMetadata;
-use polars_parquet::read::ParquetError;
-use polars_parquet::write::{
-    CompressionOptions, Compressor, DynIter, DynStreamingIterator, Encoding,
-    FallibleStreamingIterator as _, FileWriter, StatisticsOptions, Version, WriteOptions,
-    array_to_columns,
-};
+use crate::report::parquet::{Encoding, ParquetFile};
 
 use super::block::{Block, StudyRow};
 use super::fault::DataSetFault;
@@ -27,28 +18,14 @@ pub(super) const KEY_FORMAT: &str = "psd.format";
 pub(super) const KEY_STUDY: &str = "psd.study";
 pub(super) const KEY_GROUPS: &str = "psd.row_groups";
 
-const OPTIONS: WriteOptions = WriteOptions {
-    statistics: StatisticsOptions {
-        min_value: false,
-        max_value: false,
-        distinct_count: false,
-        null_count: false,
-        binary_statistics_truncate_length: None,
-    },
-    version: Version::V1,
-    compression: CompressionOptions::Zstd(None),
-    data_page_size: None,
-};
-
 /// A data set that is being written.
 pub struct Writer {
     path: PathBuf,
     part: PathBuf,
     metadata: Metadata,
     file: File,
-    out: FileWriter<Metered<BufWriter<File>>>,
+    out: ParquetFile<Metered<BufWriter<File>>>,
     meter: SharedMeter,
-    encodings: Vec<[Encoding; 1]>,
     /// Rows of the row group that is not written yet.
     block: Block,
     groups: Vec<Group>,
@@ -71,17 +48,16 @@ impl Writer {
             metadata.requirements.len(),
         );
         let empty = frame::frame(&block, metadata).map_err(DataSetFault::of(path))?;
-        let schema = empty.schema().to_arrow(CompatLevel::newest());
         let meter = SharedMeter::default();
         let metered = Metered {
             out: BufWriter::new(file.try_clone().map_err(DataSetFault::of(&part))?),
             meter: meter.clone(),
         };
-        let out = FileWriter::try_new(metered, schema, OPTIONS).map_err(DataSetFault::of(path))?;
+        let out = ParquetFile::new(metered, &empty, encodings(metadata))
+            .map_err(DataSetFault::of(path))?;
         Ok(Self {
             path: path.to_owned(),
             part,
-            encodings: encodings(metadata),
             metadata: metadata.clone(),
             file,
             out,
@@ -114,23 +90,14 @@ impl Writer {
         self.write_group()?;
         self.metadata.end = self.block.first;
         let json = |value: serde_json::Result<String>| value.map_err(DataSetFault::of(&self.path));
-        let texts = vec![
-            (KEY_FORMAT.to_owned(), FORMAT.to_string()),
-            (
-                KEY_STUDY.to_owned(),
-                json(serde_json::to_string(&self.metadata))?,
-            ),
-            (
-                KEY_GROUPS.to_owned(),
-                json(serde_json::to_string(&self.groups))?,
-            ),
+        let texts = [
+            (KEY_FORMAT, FORMAT.to_string()),
+            (KEY_STUDY, json(serde_json::to_string(&self.metadata))?),
+            (KEY_GROUPS, json(serde_json::to_string(&self.groups))?),
         ];
-        let KeyValueMetadata::Static(texts) = KeyValueMetadata::from_static(texts) else {
-            unreachable!("made of texts")
-        };
         self.meter.hold();
         let failed = DataSetFault::of(&self.part);
-        self.out.end(Some(texts)).map_err(&failed)?;
+        self.out.finish(&texts).map_err(&failed)?;
         let end = footer::with_digest(&self.meter.held());
         let failed = DataSetFault::of(&self.part);
         self.file.write_all(&end).map_err(failed)?;
@@ -157,47 +124,21 @@ impl Writer {
         let rows = self.block.len() as u64;
         let frame =
             frame::frame(&self.block, &self.metadata).map_err(DataSetFault::of(&self.path))?;
-        let types = self.out.parquet_schema().fields().to_vec();
-        for batch in frame.iter_chunks(CompatLevel::newest(), false) {
-            let mut columns = Vec::new();
-            for ((array, kind), encoding) in batch
-                .columns()
-                .iter()
-                .zip(types.clone())
-                .zip(&self.encodings)
-            {
-                let pages = array_to_columns(array, kind, OPTIONS, encoding)
-                    .map_err(DataSetFault::of(&self.path))?;
-                columns.extend(pages.into_iter().map(|pages| {
-                    let pages = pages.map(|page| page.map_err(unencoded));
-                    let compressed =
-                        Compressor::new_from_vec(pages, OPTIONS.compression, Vec::new());
-                    Ok(DynStreamingIterator::new(
-                        compressed.map_err(PolarsError::from),
-                    ))
-                }));
-            }
-            self.out
-                .write(rows, DynIter::new(columns.into_iter()))
-                .map_err(DataSetFault::of(&self.part))?;
-        }
+        self.out
+            .write(&frame)
+            .map_err(DataSetFault::of(&self.part))?;
         self.groups.push(self.meter.end_group(rows));
         self.block.clear();
         Ok(())
     }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "it maps an error")]
-fn unencoded(error: PolarsError) -> ParquetError {
-    ParquetError::FeatureNotSupported(error.to_string())
-}
-
-/// Words repeat, so they are in a dictionary; all other columns are plain.
-fn encodings(metadata: &Metadata) -> Vec<[Encoding; 1]> {
+/// Outcomes are words that repeat; all other columns are plain.
+fn encodings(metadata: &Metadata) -> Vec<Encoding> {
     let numbers = 1 + metadata.inputs.len() + metadata.results.len();
     let words = metadata.requirements.len();
-    std::iter::repeat_n([Encoding::Plain], numbers)
-        .chain(std::iter::repeat_n([Encoding::RleDictionary], words))
-        .chain(std::iter::once([Encoding::Plain]))
+    std::iter::repeat_n(Encoding::Plain, numbers)
+        .chain(std::iter::repeat_n(Encoding::RleDictionary, words))
+        .chain(std::iter::once(Encoding::Plain))
         .collect()
 }

@@ -1,0 +1,177 @@
+//! Parquet files with zstd, a row group at a time. In: frames, or the bytes of a file. Out: the other one. Equal frames give equal bytes:
+//! the encodings are stated. Polars would choose them by an estimate.
+
+use std::io::{Cursor, Write};
+
+use polars::prelude::{
+    Column, CompatLevel, DataFrame, PolarsError, PolarsResult, SchemaExt as _, Series, polars_err,
+};
+use polars_parquet::read::{
+    BasicDecompressor, ColumnChunkMetadata, PageReader, column_iter_to_arrays, infer_schema,
+};
+pub use polars_parquet::read::{FileMetadata, read_metadata};
+pub use polars_parquet::write::Encoding;
+use polars_parquet::write::{
+    CompressedPage, CompressionOptions, DynIter, DynStreamingIterator, FallibleStreamingIterator,
+    FileWriter, KeyValue, Page, ParquetType, StatisticsOptions, Version, WriteOptions,
+    array_to_columns, compress,
+};
+use rayon::prelude::*;
+
+/// No statistics: no reader skips a row group of these files.
+const OPTIONS: WriteOptions = WriteOptions {
+    statistics: StatisticsOptions {
+        min_value: false,
+        max_value: false,
+        distinct_count: false,
+        null_count: false,
+        binary_statistics_truncate_length: None,
+    },
+    version: Version::V1,
+    compression: CompressionOptions::Zstd(None),
+    data_page_size: None,
+};
+
+/// Columns that are compressed at the same time: a page is in memory several times meanwhile.
+const AT_A_TIME: usize = 8;
+
+/// A file that is being written.
+pub struct ParquetFile<W: Write> {
+    out: FileWriter<W>,
+    /// One of each column.
+    encodings: Vec<Encoding>,
+}
+
+impl<W: Write> ParquetFile<W> {
+    /// A file with the columns of `frame`, whose rows are not written. Words that repeat belong into a dictionary, all else is plain.
+    ///
+    /// # Errors
+    /// Two columns have one name.
+    pub fn new(out: W, frame: &DataFrame, encodings: Vec<Encoding>) -> PolarsResult<Self> {
+        let schema = frame.schema().to_arrow(CompatLevel::newest());
+        let out = FileWriter::try_new(out, schema, OPTIONS)?;
+        Ok(Self { out, encodings })
+    }
+
+    /// Writes the rows of a frame as a row group.
+    ///
+    /// # Errors
+    /// The rows cannot be written.
+    pub fn write(&mut self, frame: &DataFrame) -> PolarsResult<()> {
+        let kinds = self.out.parquet_schema().fields().to_vec();
+        for batch in frame.iter_chunks(CompatLevel::newest(), false) {
+            let rows = batch.len();
+            if rows == 0 {
+                continue;
+            }
+            let columns: Vec<_> = batch
+                .columns()
+                .iter()
+                .zip(&kinds)
+                .zip(&self.encodings)
+                .collect();
+            let pages = |((array, kind), encoding): &((_, &ParquetType), &Encoding)| {
+                let pages = array_to_columns(*array, (*kind).clone(), OPTIONS, &[**encoding])?;
+                pages.into_iter().flatten().map(compressed).collect()
+            };
+            let columns = columns.chunks(AT_A_TIME).flat_map(|some| {
+                let pages: Vec<PolarsResult<Vec<CompressedPage>>> = if in_a_pool() {
+                    some.iter().map(pages).collect()
+                } else {
+                    some.par_iter().map(pages).collect()
+                };
+                pages.into_iter().map(|pages| {
+                    Ok(DynStreamingIterator::new(Pages {
+                        left: pages?.into_iter(),
+                        now: None,
+                    }))
+                })
+            });
+            self.out.write(rows as u64, DynIter::new(columns))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the footer, with these texts under their keys.
+    ///
+    /// # Errors
+    /// The footer cannot be written.
+    pub fn finish(mut self, texts: &[(&str, String)]) -> PolarsResult<()> {
+        let texts = texts.iter().map(|(key, text)| KeyValue {
+            key: (*key).to_owned(),
+            value: Some(text.clone()),
+        });
+        let texts: Vec<KeyValue> = texts.collect();
+        self.out.end((!texts.is_empty()).then_some(texts)).map(drop)
+    }
+}
+
+/// Pages on their way into the file.
+struct Pages {
+    left: std::vec::IntoIter<CompressedPage>,
+    now: Option<CompressedPage>,
+}
+
+impl FallibleStreamingIterator for Pages {
+    type Item = CompressedPage;
+    type Error = PolarsError;
+
+    fn advance(&mut self) -> PolarsResult<()> {
+        self.now = self.left.next();
+        Ok(())
+    }
+
+    fn get(&self) -> Option<&CompressedPage> {
+        self.now.as_ref()
+    }
+}
+
+fn compressed(page: PolarsResult<Page>) -> PolarsResult<CompressedPage> {
+    Ok(compress(page?, Vec::new(), OPTIONS.compression)?)
+}
+
+/// Row group number `at` of a file with this footer. `bytes` are bytes of the file, the first of which is byte `from`.
+///
+/// # Errors
+/// The bytes are not those of the row group.
+pub fn row_group(
+    bytes: &[u8],
+    from: u64,
+    footer: &FileMetadata,
+    at: usize,
+) -> PolarsResult<DataFrame> {
+    let schema = infer_schema(footer)?;
+    let group = &footer.row_groups[at];
+    let part = |column: &ColumnChunkMetadata| {
+        let range = column.byte_range();
+        let [begin, end] = [range.start, range.end]
+            .map(|byte| byte.checked_sub(from))
+            .map(|byte| byte.and_then(|byte| usize::try_from(byte).ok()));
+        bytes.get(begin?..end?)
+    };
+    let columns = schema
+        .iter_values()
+        .zip(group.parquet_columns())
+        .map(|(field, column)| {
+            let bytes = part(column).ok_or_else(
+                || polars_err!(ComputeError: "`{}` is outside its row group", field.name),
+            )?;
+            let pages = PageReader::new(
+                Cursor::new(bytes.to_vec().into()),
+                column,
+                Vec::new(),
+                usize::MAX,
+            );
+            let kind = &column.descriptor().descriptor.primitive_type;
+            let pages = BasicDecompressor::new(pages, Vec::new());
+            let (arrays, _) = column_iter_to_arrays(vec![pages], vec![kind], field.clone(), None)?;
+            Ok(Column::from(Series::try_from((field, arrays))?))
+        });
+    DataFrame::new(group.num_rows(), columns.collect::<PolarsResult<_>>()?)
+}
+
+/// Whether this is a thread of a pool. Waiting there for other threads, it would begin other work of its own pool on the same stack:
+/// the next report, which waits in turn, until the stack overflows.
+pub(crate) fn in_a_pool() -> bool {
+    rayon::current_thread_index().is_some()
+}
