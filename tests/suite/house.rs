@@ -43,8 +43,8 @@ const IMPURE: &[&str] = &[
 
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
-    (&["polars", "polars_io"], &["report", "study/data_set"]),
-    (&["polars_parquet"], &["report"]),
+    (&["polars"], &["report", "study/data_set"]),
+    (&["polars_io", "polars_parquet"], &["report"]),
     (
         &[
             "plotters",

@@ -205,13 +205,14 @@ fn kept(mut wanted: Wanted) -> Vec<bool> {
     results.map(is_kept).collect()
 }
 
-/// The records of impacts of one procedure on a rig, in their order and without steps: each is the same record, with other results.
+/// The records of impacts of one procedure on a rig, each with its number among them and without steps: it is the same record, with other
+/// results.
 pub(crate) fn run(
     of: &Procedure,
     rig: Identity,
     impacts: &[BatchedImpact],
     wanted: Wanted,
-    mut read: impl FnMut(Result<&Record, Leaves>),
+    mut read: impl FnMut(usize, Result<&Record, Leaves>),
 ) {
     let mut record = Record {
         rig,
@@ -257,12 +258,12 @@ pub(crate) fn run(
         left = others;
     }
     let kept = kept(wanted);
-    for (impact, found) in impacts.iter().zip(found) {
+    for (number, (impact, found)) in impacts.iter().zip(found).enumerate() {
         let ended = match found {
             Some(found) => impact.end(&found, &kept, &mut record),
             None => Err(Leaves::NeedsRig),
         };
-        read(ended.map(|()| &record));
+        read(number, ended.map(|()| &record));
     }
 }
 

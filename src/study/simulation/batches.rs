@@ -54,13 +54,13 @@ impl Batch {
         mut read: impl FnMut(usize, Result<&Record, Leaves>),
     ) {
         let rig = virtual_rig(plan).identity();
-        let mut numbers = self.numbers.into_iter();
-        let of_next = |record: Result<&Record, Leaves>| {
-            if let Some(number) = numbers.next() {
-                read(number, record);
-            }
-        };
-        batched::run(&plan.procedures[0], rig, &self.impacts, wanted, of_next);
+        batched::run(
+            &plan.procedures[0],
+            rig,
+            &self.impacts,
+            wanted,
+            |at, record| read(self.numbers[at], record),
+        );
     }
 }
 
