@@ -11,6 +11,12 @@
 //! (M + ½ΔtC + ¼Δt²K_t) Ẍ₁ = f₁ − R − C(Ẋ + ½ΔtẌ) − K_t(ΔtẊ + ¼Δt²Ẍ) + F e_s,    w = ½Δt · e_sᵀ M̂⁻¹ e_s
 //! ```
 //!
+//! With M̂Ẍ added on both sides, it has one product with a velocity, and two accelerations as its unknown:
+//!
+//! ```text
+//! M̂ (Ẍ + Ẍ₁) = f₁ − R − (C + ΔtK_t)Ẋ + MẌ + F e_s
+//! ```
+//!
 //! Explicit Newmark and α-operator splitting keep the contact's acceleration c = M⁻¹ e_s F apart from the structure's own,
 //! s = Ẍ − c. The contact part is an impulse and is always integrated by the trapezoidal rule, as in the paper; only s is
 //! weighted with α, β, γ:
@@ -44,6 +50,8 @@ pub(crate) struct StepForm<V: Vector> {
     shares: Shares,
     /// `K_t` − G of the tangent form, `K_I` − G of α-OS; not used by explicit Newmark.
     operator: V::Matrix,
+    /// C + ΔtK of the tangent form \[N·s/m\]; not used by the others.
+    drag: V::Matrix,
     effective: V::Matrix,
     factor: Factored<V>,
     mass_factor: Factored<V>,
@@ -163,6 +171,8 @@ impl<V: Vector> StepForm<V> {
         let coefficients = Coefficients::of(integrator);
         let shares = Shares::new(&coefficients, time_step);
         shares.compose(matrices, &net, &mut effective);
+        let mut drag = matrices.damping.clone();
+        drag.add_scaled(&net, time_step);
         Ok(Self {
             integrator,
             time_step,
@@ -171,6 +181,7 @@ impl<V: Vector> StepForm<V> {
             operator: net,
             factor: Factor::of(&effective)?,
             mass_factor: Factor::of(&matrices.mass)?,
+            drag,
             effective,
             damped: !matrices.damping.vanishes(),
             struck: None,
@@ -193,6 +204,8 @@ impl<V: Vector> StepForm<V> {
         }
         self.shares
             .compose(&self.matrices, &self.operator, &mut self.effective);
+        self.drag.become_copy(&self.matrices.damping);
+        self.drag.add_scaled(&self.operator, self.time_step);
         self.factor.replace(&self.effective)?;
         self.respond();
         Ok(())
@@ -307,11 +320,10 @@ impl<V: Vector> StepForm<V> {
         to: &mut Motion<V>,
         mut contact: impl StepContact,
     ) {
-        self.acceleration_without_contact(from, load_end, &mut to.acceleration);
+        self.sum_without_contact(from, load_end, &mut to.acceleration);
         if let Some(struck) = &mut self.struck {
             let (half, s) = (0.5 * self.time_step, struck.index);
-            let accelerations = from.acceleration.as_slice()[s] + to.acceleration.as_slice()[s];
-            let free = from.velocity.as_slice()[s] + half * accelerations;
+            let free = from.velocity.as_slice()[s] + half * to.acceleration.as_slice()[s];
             struck.force = contact.force(free, half * struck.response.as_slice()[s]);
             add(&mut to.acceleration, struck.force, &struck.response);
         }
@@ -319,31 +331,25 @@ impl<V: Vector> StepForm<V> {
         V::travel(
             self.time_step,
             start,
-            &to.acceleration,
+            &mut to.acceleration,
             &mut to.velocity,
             &mut to.displacement,
         );
     }
 
-    /// Ẍ₁ of the whole step in tangent form with F = 0.
+    /// Ẍ + Ẍ₁ of the whole step in tangent form with F = 0.
     #[inline]
-    fn acceleration_without_contact(
-        &mut self,
-        from: &Moment<V>,
-        load_end: &V,
-        acceleration: &mut V,
-    ) {
+    fn sum_without_contact(&self, from: &Moment<V>, load_end: &V, sum: &mut V) {
         let step = SetOut {
-            time_step: self.time_step,
             velocity: from.velocity,
             acceleration: from.acceleration,
             force: from.force,
             load_end,
-            damping: Some(&self.matrices.damping).filter(|_| self.damped),
-            stiffness: &self.operator,
+            mass: &self.matrices.mass,
+            drag: &self.drag,
         };
-        V::set_out(&step, acceleration, &mut self.scratch, &mut self.product);
-        self.factor.solve(acceleration);
+        V::set_out(&step, sum);
+        self.factor.solve(sum);
     }
 
     /// d̃₁ of explicit Newmark and α-OS, and ṽ₁ into `to.velocity`.

@@ -155,24 +155,20 @@ impl<'a, V: Vector> Substep<'a, V> {
         joined: Option<[f64; 2]>,
         to: &mut Motion<V>,
     ) {
-        let half = 0.5 * duration;
-        self.pushing(part, &from.force, &mut to.acceleration);
+        // Until `travel`, Ẍ + Ẍ₁.
+        let sum = &mut to.acceleration;
+        self.pushing(part, &from.force, sum);
         if let Some(damping) = self.form.damping() {
-            self.glide.update(
-                [&from.velocity, &from.acceleration],
-                |_, [velocity, acceleration]| velocity + half * acceleration,
-            );
-            damping.mul_add(-1.0, self.glide, &mut to.acceleration);
+            damping.mul_add(-1.0, &from.velocity, sum);
         }
-        self.drift.update(
-            [&from.velocity, &from.acceleration],
-            |_, [velocity, acceleration]| duration * (velocity + 0.5 * half * acceleration),
-        );
+        self.form.operator().mul_add(-duration, &from.velocity, sum);
         self.form
-            .operator()
-            .mul_add(-1.0, self.drift, &mut to.acceleration);
+            .matrices
+            .mass
+            .mul_add(1.0, &from.acceleration, sum);
         let [mass, weight] = joined.unwrap_or([0.0; 2]);
-        to.acceleration.as_mut_slice()[self.struck] += weight;
+        sum.as_mut_slice()[self.struck] +=
+            weight + mass * from.acceleration.as_slice()[self.struck];
         // The factor of a whole step exists already.
         if joined.is_none() && duration == self.form.time_step {
             self.form.factor().solve(&mut to.acceleration);
@@ -184,7 +180,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         V::travel(
             duration,
             start,
-            &to.acceleration,
+            &mut to.acceleration,
             &mut to.velocity,
             &mut to.displacement,
         );

@@ -50,9 +50,10 @@ impl FrameEnergies {
         let restoring = V::trapezoid(ends.restoring_force, ends.displacement, f64::sub);
         let input = V::trapezoid(ends.load, ends.velocity, f64::add);
         let damping_work = damping_work.unwrap_or_else(|| {
-            first.update(ends.velocity, |_, [before, after]| 0.5 * (before + after));
-            matrices.damping.product(first, second);
-            time_step * first.dot(second)
+            let twice_the_mean = matrices
+                .damping
+                .quadratic_of_sum(ends.velocity, [first, second]);
+            time_step * (0.25 * twice_the_mean)
         });
         let mut next = Self {
             kinetic: 0.5 * matrices.mass.quadratic(ends.velocity[1], second),

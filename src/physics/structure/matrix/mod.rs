@@ -61,16 +61,17 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
     #[must_use]
     fn trapezoid(x: [&Self; 2], y: [&Self; 2], join: impl Fn(f64, f64) -> f64) -> f64;
 
-    /// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ) into `push`; C is `None` without damping.
-    fn set_out(step: &SetOut<Self>, push: &mut Self, glide: &mut Self, drift: &mut Self) {
-        set_out_by_products(step, push, glide, drift);
+    /// F₁ − R − (C + Δt`K_t`)Ẋ + MẌ into `push`: M̂ times the sum of the accelerations at both ends of a step.
+    #[inline]
+    fn set_out(step: &SetOut<Self>, push: &mut Self) {
+        set_out_by_products(step, push);
     }
 
-    /// Eqs. (2c) and (2d): Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), X₁ = X + ½Δt(Ẋ + Ẋ₁); from (X, Ẋ, Ẍ).
+    /// Eqs. (2c) and (2d): Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), X₁ = X + ½Δt(Ẋ + Ẋ₁); from (X, Ẋ, Ẍ). `acceleration` is Ẍ + Ẍ₁ and becomes Ẍ₁.
     fn travel(
         time_step: f64,
         from: [&Self; 3],
-        acceleration: &Self,
+        acceleration: &mut Self,
         velocity: &mut Self,
         displacement: &mut Self,
     );
@@ -79,8 +80,6 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
 /// The start of a step in tangent form.
 #[derive(Clone, Copy, Debug)]
 pub struct SetOut<'a, V: Vector> {
-    /// \[s\]
-    pub time_step: f64,
     /// Ẋ \[m/s\] and Ẍ \[m/s²\].
     pub velocity: &'a V,
     pub acceleration: &'a V,
@@ -88,33 +87,17 @@ pub struct SetOut<'a, V: Vector> {
     pub force: &'a V,
     /// F₁ \[N\].
     pub load_end: &'a V,
-    pub damping: Option<&'a V::Matrix>,
-    /// `K_t`
-    pub stiffness: &'a V::Matrix,
+    pub mass: &'a V::Matrix,
+    /// C + Δt`K_t` \[N·s/m\]
+    pub drag: &'a V::Matrix,
 }
 
 /// [`Vector::set_out`] for matrices of any band.
 #[inline]
-pub(crate) fn set_out_by_products<V: Vector>(
-    step: &SetOut<V>,
-    push: &mut V,
-    glide: &mut V,
-    drift: &mut V,
-) {
-    let (time_step, half) = (step.time_step, 0.5 * step.time_step);
+pub(crate) fn set_out_by_products<V: Vector>(step: &SetOut<V>, push: &mut V) {
     push.update([step.load_end, step.force], |_, [load, force]| load - force);
-    if let Some(damping) = step.damping {
-        glide.update(
-            [step.velocity, step.acceleration],
-            |_, [velocity, acceleration]| velocity + half * acceleration,
-        );
-        damping.mul_add(-1.0, glide, push);
-    }
-    drift.update(
-        [step.velocity, step.acceleration],
-        |_, [velocity, acceleration]| time_step * (velocity + 0.5 * half * acceleration),
-    );
-    step.stiffness.mul_add(-1.0, drift, push);
+    step.drag.mul_add(-1.0, step.velocity, push);
+    step.mass.mul_add(1.0, step.acceleration, push);
 }
 
 /// A symmetric matrix over the degrees of freedom.
@@ -144,6 +127,9 @@ pub trait Matrix: Clone + Debug + PartialEq {
     /// xᵀ A x; `scratch` is a vector of the same order.
     #[must_use]
     fn quadratic(&self, x: &Self::Vector, scratch: &mut Self::Vector) -> f64;
+    /// xᵀ A x of a sum x = x₀ + x₁; `scratch` is two vectors of the same order.
+    #[must_use]
+    fn quadratic_of_sum(&self, x: [&Self::Vector; 2], scratch: [&mut Self::Vector; 2]) -> f64;
 }
 
 /// A factor that solves A x = b.
@@ -236,13 +222,14 @@ impl Vector for f64 {
     fn travel(
         time_step: f64,
         from: [&Self; 3],
-        acceleration: &Self,
+        acceleration: &mut Self,
         velocity: &mut Self,
         displacement: &mut Self,
     ) {
         let half = 0.5 * time_step;
-        *velocity = from[1] + half * (from[2] + acceleration);
+        *velocity = from[1] + half * *acceleration;
         *displacement = from[0] + half * (from[1] + *velocity);
+        *acceleration -= from[2];
     }
 }
 
@@ -302,6 +289,12 @@ impl Matrix for f64 {
 
     #[inline]
     fn quadratic(&self, x: &f64, _: &mut f64) -> f64 {
+        self * x * x
+    }
+
+    #[inline]
+    fn quadratic_of_sum(&self, x: [&f64; 2], _: [&mut f64; 2]) -> f64 {
+        let x = x[0] + x[1];
         self * x * x
     }
 }
@@ -394,21 +387,18 @@ impl Vector for Vec<f64> {
         tridiagonal::trapezoid(x.map(Vec::as_slice), y.map(Vec::as_slice), join)
     }
 
-    fn set_out(step: &SetOut<Self>, push: &mut Self, glide: &mut Self, drift: &mut Self) {
-        match step.damping {
-            Some(damping)
-                if damping.half_bandwidth() == 1 && step.stiffness.half_bandwidth() == 1 =>
-            {
-                tridiagonal::set_out_tridiagonal(step, damping, push);
-            }
-            _ => set_out_by_products(step, push, glide, drift),
+    fn set_out(step: &SetOut<Self>, push: &mut Self) {
+        if step.mass.half_bandwidth() == 0 && step.drag.half_bandwidth() == 1 {
+            tridiagonal::set_out_tridiagonal(step, push);
+        } else {
+            set_out_by_products(step, push);
         }
     }
 
     fn travel(
         time_step: f64,
         from: [&Self; 3],
-        acceleration: &Self,
+        acceleration: &mut Self,
         velocity: &mut Self,
         displacement: &mut Self,
     ) {
@@ -472,6 +462,17 @@ impl Matrix for SymmetricBand {
         }
         self.mul_into(x, scratch);
         tridiagonal::dot(scratch, x)
+    }
+
+    fn quadratic_of_sum(&self, x: [&Vec<f64>; 2], [sum, product]: [&mut Vec<f64>; 2]) -> f64 {
+        if self.half_bandwidth() == 1 {
+            return tridiagonal::quadratic_of_sum(
+                [self.band(0), self.band(1)],
+                x.map(Vec::as_slice),
+            );
+        }
+        sum.update(x, |_, [before, after]| before + after);
+        self.quadratic(sum, product)
     }
 }
 

@@ -4,64 +4,41 @@
 //! need no check in the loop. A step of few floors is delayed most by the values that it has just written. A tridiagonal frame is
 //! therefore evaluated in one loop, with its neighbours still in registers.
 
-use super::{SetOut, SymmetricBand};
+use super::SetOut;
 
-/// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ), both matrices tridiagonal.
+/// F₁ − R − (C + Δt`K_t`)Ẋ + MẌ, the sum tridiagonal and M diagonal.
+pub(crate) fn set_out_tridiagonal(step: &SetOut<Vec<f64>>, push: &mut [f64]) {
+    set_out(
+        push,
+        [step.load_end, step.force, step.mass.band(0)],
+        [step.velocity, step.acceleration],
+        [step.drag.band(0), step.drag.band(1)],
+    );
+}
+
 #[inline(never)]
-pub(crate) fn set_out_tridiagonal(
-    step: &SetOut<Vec<f64>>,
-    damping: &SymmetricBand,
+fn set_out(
     push: &mut [f64],
+    [load, force, mass]: [&[f64]; 3],
+    [velocity, acceleration]: [&[f64]; 2],
+    [drag, beside]: [&[f64]; 2],
 ) {
-    let SetOut {
-        time_step,
-        velocity,
-        acceleration,
-        force,
-        load_end,
-        stiffness,
-        ..
-    } = *step;
-    let (half, quarter) = (0.5 * time_step, 0.5 * (0.5 * time_step));
-    let Some((top, lower)) = push.split_last_mut() else {
-        return;
-    };
-    let last = lower.len();
-    let travel = |velocity: f64, acceleration: f64| {
-        (
-            velocity + half * acceleration,
-            time_step * (velocity + quarter * acceleration),
-        )
-    };
-    let (c, c_beside, k, k_beside) = (
-        damping.band(0),
-        damping.band(1),
-        stiffness.band(0),
-        stiffness.band(1),
-    );
-    // For damper and spring each: the travel of the floor below and of this one, and the entry that couples them.
-    let (mut below, mut coupling) = ((0.0, 0.0), (0.0, 0.0));
-    let mut here = travel(velocity[0], acceleration[0]);
-    let forces = load_end[..last].iter().zip(&force[..last]);
-    let motions = velocity[1..=last].iter().zip(&acceleration[1..=last]);
-    let rows = c[..last]
-        .iter()
-        .zip(&c_beside[..last])
-        .zip(k[..last].iter().zip(&k_beside[..last]));
-    for ((push, (load, force)), ((velocity, acceleration), ((c, c_above), (k, k_above)))) in
-        lower.iter_mut().zip(forces).zip(motions.zip(rows))
-    {
-        let above = travel(*velocity, *acceleration);
-        let braking = coupling.0 * below.0 + c * here.0 + c_above * above.0;
-        let pull = coupling.1 * below.1 + k * here.1 + k_above * above.1;
-        *push = load - force - braking - pull;
-        (below, here, coupling) = (here, above, (*c_above, *k_above));
+    let last = push.len() - 1;
+    let rest = |floor: usize| load[floor] - force[floor] + mass[floor] * acceleration[floor];
+    push[0] = rest(0) - (drag[0] * velocity[0] + beside[0] * velocity[1]);
+    push[last] = rest(last) - (beside[last - 1] * velocity[last - 1] + drag[last] * velocity[last]);
+    let inner = &mut push[1..last];
+    let count = inner.len();
+    let [load, force, mass, acceleration, drag] =
+        [load, force, mass, acceleration, drag].map(|all| &all[1..=count]);
+    let [below, here, above] = [0, 1, 2].map(|first| &velocity[first..first + count]);
+    let [to_below, to_above] = [0, 1].map(|first| &beside[first..first + count]);
+    for (floor, push) in inner.iter_mut().enumerate() {
+        let braking = to_below[floor] * below[floor]
+            + drag[floor] * here[floor]
+            + to_above[floor] * above[floor];
+        *push = load[floor] - force[floor] + mass[floor] * acceleration[floor] - braking;
     }
-    let (braking, pull) = (
-        coupling.0 * below.0 + c[last] * here.0,
-        coupling.1 * below.1 + k[last] * here.1,
-    );
-    *top = load_end[last] - force[last] - braking - pull;
 }
 
 /// Each entry becomes the value of `entry` for it and for the same entries of the others.
@@ -77,12 +54,12 @@ pub(crate) fn update<const N: usize>(
     }
 }
 
-/// Eqs. (2c) and (2d): Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), X₁ = X + ½Δt(Ẋ + Ẋ₁); from (X, Ẋ, Ẍ).
+/// Eqs. (2c) and (2d): Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), X₁ = X + ½Δt(Ẋ + Ẋ₁); from (X, Ẋ, Ẍ). `acceleration` is Ẍ + Ẍ₁ and becomes Ẍ₁.
 #[inline(never)]
 pub(crate) fn travel(
     time_step: f64,
     from: [&[f64]; 3],
-    acceleration: &[f64],
+    acceleration: &mut [f64],
     velocity: &mut [f64],
     displacement: &mut [f64],
 ) {
@@ -96,111 +73,126 @@ pub(crate) fn travel(
         .zip(&mut velocity[..order])
         .zip(acceleration);
     for (((position, speed), end), ((displacement, velocity), start)) in after.zip(before) {
-        *speed = velocity + half * (start + end);
+        *speed = velocity + half * *end;
         *position = displacement + half * (velocity + *speed);
+        *end -= start;
     }
 }
 
 /// Number of parallel partial sums: in a single sum each addition waits for the one before.
-const LANES: usize = 8;
+const LANES: usize = 4;
+
+/// The sum of a term of each floor, which has one number of each of these.
+#[inline]
+fn sum<const N: usize>(floors: [&[f64]; N], term: impl Fn([f64; N]) -> f64) -> f64 {
+    let count = floors[0].len();
+    let turns = count / LANES;
+    let floors = floors.map(|all| &all[..count]);
+    let lanes = floors.map(|all| &all.as_chunks::<LANES>().0[..turns]);
+    let mut sums = [0.0; LANES];
+    for turn in 0..turns {
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            *sum += term(lanes.map(|all| all[turn][lane]));
+        }
+    }
+    let rest: f64 = (LANES * turns..count)
+        .map(|floor| term(floors.map(|all| all[floor])))
+        .sum();
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
+}
 
 /// xᵀ y.
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let (x, y) = (x.as_chunks::<LANES>(), y[..x.len()].as_chunks::<LANES>());
-    let rest: f64 = x.1.iter().zip(y.1).map(|(x, y)| x * y).sum();
-    let mut sums = [0.0; LANES];
-    for (x, y) in x.0.iter().zip(y.0) {
-        for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
-            *sum += x * y;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
+    sum([x, y], |[x, y]| x * y)
 }
 
 /// xᵀ D x, D diagonal.
 pub(crate) fn weighted(x: &[f64], weights: &[f64]) -> f64 {
-    let (x, weights) = (
-        x.as_chunks::<LANES>(),
-        weights[..x.len()].as_chunks::<LANES>(),
-    );
-    let rest: f64 =
-        x.1.iter()
-            .zip(weights.1)
-            .map(|(x, weight)| weight * x * x)
-            .sum();
-    let mut sums = [0.0; LANES];
-    for (x, weights) in x.0.iter().zip(weights.0) {
-        for ((sum, x), weight) in sums.iter_mut().zip(x).zip(weights) {
-            *sum += weight * x * x;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
+    sum([x, weights], |[x, weight]| weight * x * x)
 }
 
 /// (x₀ + x₁)ᵀ (y₁ ± y₀), with the sign from `join`.
-pub(crate) fn trapezoid(x: [&[f64]; 2], y: [&[f64]; 2], join: impl Fn(f64, f64) -> f64) -> f64 {
-    let order = x[0].len();
-    let (x0, x1) = (
-        x[0].as_chunks::<LANES>(),
-        x[1][..order].as_chunks::<LANES>(),
-    );
-    let (y0, y1) = (
-        y[0][..order].as_chunks::<LANES>(),
-        y[1][..order].as_chunks::<LANES>(),
-    );
-    let rest = x0.1.iter().zip(x1.1).zip(y0.1.iter().zip(y1.1));
-    let rest: f64 = rest
-        .map(|((x0, x1), (y0, y1))| (x0 + x1) * join(*y1, *y0))
-        .sum();
-    let mut sums = [0.0; LANES];
-    for ((x0, x1), (y0, y1)) in x0.0.iter().zip(x1.0).zip(y0.0.iter().zip(y1.0)) {
-        for (sum, (x, y)) in sums
-            .iter_mut()
-            .zip(x0.iter().zip(x1).zip(y0.iter().zip(y1)))
-        {
-            *sum += (x.0 + x.1) * join(*y.1, *y.0);
-        }
-    }
-    sums.iter().sum::<f64>() + rest
+pub(crate) fn trapezoid(
+    [x0, x1]: [&[f64]; 2],
+    [y0, y1]: [&[f64]; 2],
+    join: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    sum([x0, x1, y0, y1], |[x0, x1, y0, y1]| {
+        (x0 + x1) * join(y1, y0)
+    })
+}
+
+/// xᵀ A x of a sum x = x₀ + x₁ and a tridiagonal A: its diagonal, and the entries beside it, which are in both triangles.
+#[inline(never)]
+pub(crate) fn quadratic_of_sum([diagonal, beside]: [&[f64]; 2], [x0, x1]: [&[f64]; 2]) -> f64 {
+    let last = beside.len();
+    let below = [&x0[..last], x1, &x0[1..], &x1[1..], diagonal, beside];
+    let below = sum(below, |[x0, x1, above0, above1, diagonal, beside]| {
+        let (x, coupled) = (x0 + x1, beside * (above0 + above1));
+        x * (diagonal * x + (coupled + coupled))
+    });
+    let top = x0[last] + x1[last];
+    below + diagonal[last] * top * top
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::matrix::{Vector as _, set_out_by_products};
+    use crate::structure::matrix::{Matrix as _, SymmetricBand, Vector as _, set_out_by_products};
 
-    /// Both loops give bit-identical numbers, from two floors to more than one vector register contains.
+    fn numbers(order: u32, seed: f64) -> Vec<f64> {
+        (0..order)
+            .map(|i| (seed + 1.7 * f64::from(i)).sin())
+            .collect()
+    }
+
+    fn matrix(order: u32, seed: f64) -> SymmetricBand {
+        let diagonal = numbers(order, seed);
+        let mut matrix = SymmetricBand::zero(diagonal.len(), 1);
+        matrix.band_mut(0).copy_from_slice(&diagonal);
+        matrix
+            .band_mut(1)
+            .copy_from_slice(&numbers(order, seed + 0.5)[1..]);
+        matrix
+    }
+
+    /// One loop gives what the products give to rounding, from two floors to more than one vector register contains.
     #[test]
     fn one_loop_gives_what_the_products_give() {
-        for order in 2..20_u32 {
-            let numbers = |seed: f64| {
-                (0..order)
-                    .map(|i| (seed + 1.7 * f64::from(i)).sin())
-                    .collect::<Vec<f64>>()
-            };
-            let matrix = |seed: f64| {
-                let mut matrix = SymmetricBand::zero(numbers(0.0).len(), 1);
-                matrix.band_mut(0).copy_from_slice(&numbers(seed));
-                matrix
-                    .band_mut(1)
-                    .copy_from_slice(&numbers(seed + 0.5)[1..]);
-                matrix
-            };
-            let (damping, stiffness, load_end) = (matrix(0.1), matrix(0.2), numbers(0.3));
-            let [velocity, acceleration, force] = [0.5, 0.6, 0.7].map(numbers);
+        for order in 2..20 {
+            let (mass, drag) = (
+                SymmetricBand::diagonal(&numbers(order, 0.1)),
+                matrix(order, 0.2),
+            );
+            let [velocity, acceleration, force, load_end] =
+                [0.3, 0.5, 0.6, 0.7].map(|seed| numbers(order, seed));
             let step = SetOut {
-                time_step: 0.02,
                 velocity: &velocity,
                 acceleration: &acceleration,
                 force: &force,
                 load_end: &load_end,
-                damping: Some(&damping),
-                stiffness: &stiffness,
+                mass: &mass,
+                drag: &drag,
             };
-            let [mut push, mut glide, mut drift, mut once] = [0.0; 4].map(numbers);
-            set_out_by_products(&step, &mut push, &mut glide, &mut drift);
-            Vec::set_out(&step, &mut once, &mut glide, &mut drift);
-            assert_eq!(once, push, "{order} floors");
+            let [mut push, mut once] = [0.0; 2].map(|seed| numbers(order, seed));
+            set_out_by_products(&step, &mut push);
+            Vec::set_out(&step, &mut once);
+            for (once, push) in once.iter().zip(&push) {
+                assert!((once - push).abs() < 1e-15, "{order} floors");
+            }
+        }
+    }
+
+    #[test]
+    fn the_form_of_a_sum_is_that_of_the_products() {
+        for order in 2..20 {
+            let matrix = matrix(order, 0.2);
+            let [x0, x1] = [0.3, 0.4].map(|seed| numbers(order, seed));
+            let [mut sum, mut product] = [0.0; 2].map(|seed| numbers(order, seed));
+            let once = matrix.quadratic_of_sum([&x0, &x1], [&mut sum, &mut product]);
+            sum.update([&x0, &x1], |_, [before, after]| before + after);
+            let products = matrix.quadratic(&sum, &mut product);
+            assert!((once - products).abs() < 1e-14, "{order} floors");
         }
     }
 }
