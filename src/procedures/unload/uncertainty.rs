@@ -173,6 +173,7 @@ impl UncertainRun<'_> {
             .collect();
         (rest.of_displacement, rest.of_force) = (of_displacement, of_force);
         rest.on_computed = floors().filter(|floor| !axes.is_measured(*floor)).collect();
+        rest.computed = axes.computed();
     }
 }
 

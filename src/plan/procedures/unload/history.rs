@@ -86,6 +86,8 @@ pub struct Rest {
     pub of_force: Vec<Vec<Contribution>>,
     /// The floors that stand on a computed storey: the uncertainty of their positions is not known.
     pub on_computed: Vec<usize>,
+    /// The storeys that models compute: the uncertainty of their drifts is not known.
+    pub computed: Vec<usize>,
     /// Why it is not the position of zero force; the uncertainty of the position is then withheld.
     pub incomplete: Option<String>,
 }
@@ -172,6 +174,9 @@ impl Rest {
     pub fn drift_contributions(&self) -> Vec<Contribution> {
         let floors = &self.of_displacement;
         entries((0..floors.len()).map(|floor| {
+            if self.computed.contains(&floor) {
+                return Vec::new();
+            }
             let mut parts = floors[floor].clone();
             for part in floor.checked_sub(1).map_or(&[][..], |below| &floors[below]) {
                 share(
