@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 use rustix::process::Signal;
 
-use crate::stage::{Stage, code, finish, signal, start, until, wait};
+use crate::stage::{Stage, code, finish, signal, start, until, wait, watched};
 use crate::terminal::{MOVE, Terminal};
 
 #[test]
@@ -39,7 +39,7 @@ fn a_monitor_ends_with_its_reader_and_with_each_signal() {
 
 #[test]
 fn a_rig_that_falls_silent_ends_the_monitor_and_is_reported() {
-    let stage = Stage::of(str::to_owned, "after 12 replies: drop replies for ever");
+    let stage = Stage::of(watched, "after 12 replies: drop replies for ever");
     let ended = wait(&mut stage.tool("monitor", &["--every", "20 ms"]));
     assert_eq!(ended.code, Some(3), "{}", ended.output);
     assert!(
@@ -242,7 +242,7 @@ fn a_jog_session_goes_from_position_to_position() {
 
 #[test]
 fn a_rig_that_falls_silent_ends_the_sitting_and_the_record_is_sound() {
-    let stage = Stage::of(str::to_owned, "after 1 moves: drop replies for ever");
+    let stage = Stage::of(watched, "after 1 moves: drop replies for ever");
     let ended = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--yes"]));
     assert!(
         ended.code == Some(3) && ended.output.contains("no usable answer within"),

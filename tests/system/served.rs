@@ -313,7 +313,7 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
 #[test]
 fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_informed() {
     // The pre-test check makes two moves.
-    let silent = || Stage::of(str::to_owned, "after 3 moves: drop replies for ever");
+    let silent = || Stage::of(watched, "after 3 moves: drop replies for ever");
     let mut served = Served::start_on(silent(), "nees", &[]);
     let mut client = Coordinator::come(&served);
     let answers = client.go(1e-3);
