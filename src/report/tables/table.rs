@@ -5,7 +5,7 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use polars::prelude::{Column, DataFrame, PlSmallStr};
+use polars::prelude::{Column, DataFrame, DataType, PlSmallStr};
 use polars_io::prelude::{CsvWriter, SerWriter as _};
 
 use crate::report::parquet::{Encoding, ParquetFile, in_a_pool};
@@ -116,10 +116,10 @@ impl<'a> Table<'a> {
 
 /// The texts of a table are words of psd, which repeat.
 fn encoding(column: &Column) -> Encoding {
-    if column.dtype().is_string() {
-        Encoding::RleDictionary
-    } else {
-        Encoding::Plain
+    match column.dtype() {
+        DataType::String => Encoding::RleDictionary,
+        DataType::Float64 => Encoding::ByteStreamSplit,
+        _ => Encoding::Plain,
     }
 }
 

@@ -133,11 +133,12 @@ impl Writer {
     }
 }
 
-/// Outcomes are words that repeat; all other columns are plain.
+/// The number of the run, its inputs and results, its outcomes, which are words that repeat, and the reason.
 fn encodings(metadata: &Metadata) -> Vec<Encoding> {
-    let numbers = 1 + metadata.inputs.len() + metadata.results.len();
+    let numbers = metadata.inputs.len() + metadata.results.len();
     let words = metadata.requirements.len();
-    std::iter::repeat_n(Encoding::Plain, numbers)
+    std::iter::once(Encoding::Plain)
+        .chain(std::iter::repeat_n(Encoding::ByteStreamSplit, numbers))
         .chain(std::iter::repeat_n(Encoding::RleDictionary, words))
         .chain(std::iter::once(Encoding::Plain))
         .collect()
