@@ -83,6 +83,8 @@ pub(crate) fn propagate(
     if !leads_there(&found.ends, schema::MAX_DISPLACEMENT, results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
+    // With velocities the path is another one.
+    let stops = found.velocities.is_empty();
     evaluate.path = uncertainty.with_velocities(
         &setting.frame,
         evaluate.path,
@@ -106,7 +108,7 @@ pub(crate) fn propagate(
             RecordedValues {
                 steps: history.steps.len(),
                 reported,
-                nominal: None,
+                nominal: stops.then(|| inputs.evaluation(&found)),
             },
             progress,
         )?,
@@ -145,6 +147,16 @@ impl ShakeInputs {
             (schema::MAX_BASE_SHEAR, vec![floors.max_base_shear]),
             (schema::MAX_ELEMENT_FORCE, floors.max_element_force.clone()),
         ]
+    }
+
+    /// The values of a run.
+    fn evaluation(&self, found: &FloorsOutcome) -> Evaluation {
+        let numbers = |floors: &Floors| flat(self.numbers(floors));
+        Evaluation {
+            values: numbers(&found.between),
+            before_departure: found.before_departure.as_ref().map(numbers),
+            farthest: found.between.farthest(),
+        }
     }
 }
 
@@ -208,19 +220,10 @@ impl Evaluate for RecordedShake<'_, '_> {
     }
 
     fn evaluate(&self, readings: &Perturbation, inputs: &ShakeInputs) -> Evaluation {
-        let numbers = |floors: &Floors| flat(inputs.numbers(floors));
-        let Ok(FloorsOutcome {
-            between,
-            before_departure,
-            ..
-        }) = self.run(inputs, readings)
-        else {
-            return Evaluation::none(self.length);
-        };
-        Evaluation {
-            values: numbers(&between),
-            before_departure: before_departure.as_ref().map(numbers),
-            farthest: between.farthest(),
-        }
+        let found = self.run(inputs, readings);
+        found.map_or_else(
+            |_| Evaluation::none(self.length),
+            |found| inputs.evaluation(&found),
+        )
     }
 }

@@ -13,7 +13,9 @@ use crate::procedures::stepping::setting::FrameSteps;
 use crate::run::stop::Stop;
 use psd_physics::impact::ImpactInput;
 use psd_physics::impact::summary::ImpactSummary;
-use psd_physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
+use psd_physics::reintegration::frame::{
+    FloorImpact, FloorImpactOutcome, Floors, FrameRun, StrikerOutcome,
+};
 use psd_physics::reintegration::frame_path::FramePath;
 use psd_physics::reintegration::impact::ImpactValues;
 use psd_physics::reintegration::perturbation::Perturbation;
@@ -67,7 +69,7 @@ pub(crate) fn propagate(
         length: 0,
     };
     let inputs = evaluate.inputs(&[])?;
-    let found = inputs
+    let mut found = inputs
         .run
         .struck(&inputs.impact, &evaluate.path, &Perturbation::none(axes))
         .map_err(|error| error.to_string())?;
@@ -76,10 +78,12 @@ pub(crate) fn propagate(
     {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
+    // With velocities the path is another one.
+    let stops = found.floors.velocities.is_empty();
     evaluate.path = uncertainty.with_velocities(
         frame,
         evaluate.path,
-        found.floors.velocities,
+        std::mem::take(&mut found.floors.velocities),
         substructures,
     )?;
     let layout = layout_of(&inputs.numbers(
@@ -100,7 +104,7 @@ pub(crate) fn propagate(
         RecordedValues {
             steps: history.len(),
             reported,
-            nominal: None,
+            nominal: stops.then(|| inputs.evaluation(&found, 1)),
         },
         progress,
     )?;
@@ -176,6 +180,29 @@ impl StoreyInputs {
             counted(values),
         ]);
         numbers
+    }
+
+    /// The values of a run with so many steps for each of the record.
+    fn evaluation(&self, found: &FloorImpactOutcome, finer: u8) -> Evaluation {
+        let time_step = self.run.time_step / f64::from(finer);
+        let numbers = |values: &ImpactValues, striker: &StrikerOutcome, floors: &Floors| {
+            flat(self.numbers(values, striker, floors, time_step))
+        };
+        let before = (
+            &found.impact.before_departure,
+            &found.before_departure,
+            &found.floors.before_departure,
+        );
+        Evaluation {
+            values: numbers(&found.impact.values, &found.striker, &found.floors.between),
+            before_departure: match before {
+                (Some(values), Some(striker), Some(floors)) => {
+                    Some(numbers(values, striker, floors))
+                }
+                _ => None,
+            },
+            farthest: found.floors.between.farthest(),
+        }
     }
 }
 
@@ -257,27 +284,10 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
     }
 
     fn evaluate(&self, readings: &Perturbation, inputs: &StoreyInputs) -> Evaluation {
-        let Ok(found) = inputs.run.struck(&inputs.impact, &self.path, readings) else {
-            return Evaluation::none(self.length);
-        };
-        let time_step = inputs.run.time_step / f64::from(readings.finer);
-        let numbers = |values: &ImpactValues, striker: &StrikerOutcome, floors: &Floors| {
-            flat(inputs.numbers(values, striker, floors, time_step))
-        };
-        let before = (
-            &found.impact.before_departure,
-            &found.before_departure,
-            &found.floors.before_departure,
-        );
-        Evaluation {
-            values: numbers(&found.impact.values, &found.striker, &found.floors.between),
-            before_departure: match before {
-                (Some(values), Some(striker), Some(floors)) => {
-                    Some(numbers(values, striker, floors))
-                }
-                _ => None,
-            },
-            farthest: found.floors.between.farthest(),
-        }
+        let found = inputs.run.struck(&inputs.impact, &self.path, readings);
+        found.map_or_else(
+            |_| Evaluation::none(self.length),
+            |found| inputs.evaluation(&found, readings.finer),
+        )
     }
 }
