@@ -171,8 +171,8 @@ impl<V: Vector> StepForm<V> {
         let coefficients = Coefficients::of(integrator);
         let shares = Shares::new(&coefficients, time_step);
         shares.compose(matrices, &net, &mut effective);
-        let mut drag = matrices.damping.clone();
-        drag.add_scaled(&net, time_step);
+        let mut drag = V::Matrix::zero_of(order);
+        compose_drag(&net, &matrices.damping, time_step, &mut drag);
         Ok(Self {
             integrator,
             time_step,
@@ -204,8 +204,12 @@ impl<V: Vector> StepForm<V> {
         }
         self.shares
             .compose(&self.matrices, &self.operator, &mut self.effective);
-        self.drag.become_copy(&self.matrices.damping);
-        self.drag.add_scaled(&self.operator, self.time_step);
+        compose_drag(
+            &self.operator,
+            &self.matrices.damping,
+            self.time_step,
+            &mut self.drag,
+        );
         self.factor.replace(&self.effective)?;
         self.respond();
         Ok(())
@@ -270,6 +274,14 @@ impl<V: Vector> StepForm<V> {
     pub fn contact_force(&self) -> f64 {
         self.struck.as_ref().map_or(0.0, |struck| struck.force)
     }
+}
+
+/// C + ΔtK into `drag`. K comes first: its band is hardly ever narrower than that of C, and `drag` then keeps its memory.
+#[inline]
+fn compose_drag<M: Matrix>(operator: &M, damping: &M, time_step: f64, drag: &mut M) {
+    drag.become_copy(operator);
+    drag.multiply(time_step);
+    drag.add_scaled(damping, 1.0);
 }
 
 /// The factors of K and of C in M̂ = M + (1+α)Δt(γC + βΔtK), computed once.

@@ -1,8 +1,8 @@
 //! Loops over the floors of a frame. In: vectors, matrices. Out: vectors and sums. They know no striker and have no state.
 //!
 //! Vectors come as arguments, the written ones separate. The compiler therefore knows that they do not overlap; cut to one length, they
-//! need no check in the loop. A step of few floors is delayed most by the values that it has just written. A tridiagonal frame is
-//! therefore evaluated in one loop, with its neighbours still in registers.
+//! need no check in the loop. A step of few floors is delayed most by the values that it has just written: the loop over a tridiagonal frame
+//! reads what the last step wrote.
 
 use super::SetOut;
 
