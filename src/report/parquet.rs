@@ -143,7 +143,7 @@ impl FallibleStreamingIterator for Pages {
 }
 
 /// A plain page of doubles with the first bytes of all of them, then the second bytes, and so on. Neighbours in a table have the same sign,
-/// exponent and leading digits: such a page is compressed in half the time, to two thirds of the size.
+/// exponent and leading digits: such a page is compressed faster, and to a smaller size.
 fn split(page: Page) -> Page {
     const BYTES: usize = size_of::<f64>();
     let Page::Data(page) = page else {
@@ -161,9 +161,8 @@ fn split(page: Page) -> Page {
     };
     let (numbers, _) = plain[levels..].as_chunks::<BYTES>();
     let mut bytes = plain.to_vec();
-    let mut streams = bytes[levels..].chunks_exact_mut(numbers.len().max(1));
-    for byte in 0..BYTES {
-        let stream = streams.next().unwrap_or_default();
+    let streams = bytes[levels..].chunks_exact_mut(numbers.len().max(1));
+    for (byte, stream) in streams.take(BYTES).enumerate() {
         for (to, number) in stream.iter_mut().zip(numbers) {
             *to = number[byte];
         }

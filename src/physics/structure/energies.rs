@@ -50,10 +50,10 @@ impl FrameEnergies {
         let restoring = V::trapezoid(ends.restoring_force, ends.displacement, f64::sub);
         let input = V::trapezoid(ends.load, ends.velocity, f64::add);
         let damping_work = damping_work.unwrap_or_else(|| {
-            let twice_the_mean = matrices
+            let of_twice_the_mean = matrices
                 .damping
                 .quadratic_of_sum(ends.velocity, [first, second]);
-            time_step * (0.25 * twice_the_mean)
+            time_step * (0.25 * of_twice_the_mean)
         });
         let mut next = Self {
             kinetic: 0.5 * matrices.mass.quadratic(ends.velocity[1], second),
