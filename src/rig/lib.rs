@@ -313,10 +313,10 @@ pub trait Rig {
         None
     }
 
-    /// This rig, if it is a virtual one on which every reading is its target and the force of the specimen there, and no call of it is
-    /// logged.
-    fn ideal(&mut self) -> Option<&mut VirtualRig> {
-        None
+    /// Whether it is a virtual rig, or one that is recorded, on which every reading is its target and the force of the specimen there. It is
+    /// then [`Rig::at_once`] too.
+    fn is_ideal(&mut self) -> bool {
+        false
     }
 
     /// Moves at constant velocity (\[m/s\], signed towards the target) to absolute targets, and reads at up to `samples`

@@ -192,12 +192,17 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Steps with this pause \[s\] that need no report, on an ideal rig that carries the whole specimen.
+    /// Steps with this pause \[s\] on an ideal rig that carries the whole specimen.
     pub(crate) fn ideal_steps(&mut self, pause: f64) -> Option<IdealSteps> {
-        if self.hybrid.is_some() || self.observer.follows_steps() {
+        if self.hybrid.is_some() {
             return None;
         }
         self.guard.ideal_steps(pause)
+    }
+
+    /// Whether the observer follows the steps.
+    pub(crate) fn is_followed(&self) -> bool {
+        self.observer.follows_steps()
     }
 
     /// A step is done that the observer does not follow.
@@ -440,7 +445,7 @@ impl<'run> Session<'run> {
         self.with_broken(stepped, reading)
     }
 
-    /// The same of a run on an ideal rig, whose observer follows no steps.
+    /// The same of a run on an ideal rig.
     #[inline]
     pub(crate) fn step_ideally(
         &mut self,

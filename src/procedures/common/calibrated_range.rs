@@ -37,8 +37,8 @@ pub(crate) fn withhold(
         ];
         for (name, dimension, calibrated, source) in channels {
             let of_force = dimension == Dimension::FORCE;
-            let outside = calibrated.zip(largest(readings, of_force, axis));
-            let Some(reason) = outside.and_then(|(range, largest)| {
+            let Some(reason) = calibrated.and_then(|range| {
+                let largest = largest(readings, of_force, axis)?;
                 let name = format!("{name}{}", of_axis(named_axis(axis, axes)));
                 outside_of(range, largest, &name, dimension)
             }) else {

@@ -137,8 +137,8 @@ pub(crate) fn run<S: Stepped>(
         wall_time: session.guard.time(),
         is_cut_off: false,
     };
-    let is_followed = plan.mode != Mode::RampAndHold || !plan.inspect.is_empty();
-    let ideal = if is_followed || taken.target != taken.reading.displacement {
+    let is_interrupted = plan.mode != Mode::RampAndHold || !plan.inspect.is_empty();
+    let ideal = if is_interrupted || taken.target != taken.reading.displacement {
         None
     } else {
         session.ideal_steps(steps.pause)
@@ -243,7 +243,7 @@ impl<S: Stepped> StepsTaken<S> {
         braked.unwrap_or(Ok(()))
     }
 
-    /// All steps on an ideal rig that nobody follows: no tracking error can arise.
+    /// All steps on an ideal rig: no tracking error can arise.
     fn all_ideally(
         &mut self,
         steps: &Steps,
@@ -279,6 +279,8 @@ impl<S: Stepped> StepsTaken<S> {
             ..
         } = self;
         let watches = stiffer.watches();
+        let tracking = Tracking::together(monitors.tracking());
+        let mut report = session.is_followed().then(StepReport::default);
         let mut struck = false;
         for _ in 0..steps.count {
             stepped.predict(target);
@@ -297,8 +299,21 @@ impl<S: Stepped> StepsTaken<S> {
                 stiffer.take(reading, &[], before || struck, session);
             }
             *assessed = Some(balance.input);
-            session.guard.check_energy_error(balance.relative_error())?;
-            session.step_passed(stepped.axes().step + stepped.before());
+            let energy_error = balance.relative_error();
+            session.guard.check_energy_error(energy_error)?;
+            let (state, before) = (stepped.axes(), stepped.before());
+            if let Some(report) = &mut report {
+                let errors = Errors {
+                    energy_error,
+                    tracking,
+                    tracking_energy_error: tracking.share_of(balance.input),
+                };
+                errors.report(&state, report);
+                report.step += before;
+                session.step_done(report)?;
+            } else {
+                session.step_passed(state.step + before);
+            }
             if stepped.over() {
                 break;
             }

@@ -9,6 +9,8 @@ use psd_plan::{Interval, Limits};
 /// What all steps of a run on an ideal rig have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct IdealSteps {
+    /// As the guard requests it \[m/s\]; None: the rig's own.
+    requested: Option<f64>,
     /// \[m/s\]
     speed: f64,
     /// \[s\]
@@ -18,7 +20,8 @@ pub struct IdealSteps {
 impl Guard<'_> {
     /// Steps with this pause \[s\], if the rig is ideal and neither its speed nor an error of zero is outside a limit.
     pub fn ideal_steps(&mut self, pause: f64) -> Option<IdealSteps> {
-        let speed = self.speed_of(None).unwrap_or(OWN_SPEED);
+        let requested = self.speed_of(None);
+        let speed = requested.unwrap_or(OWN_SPEED);
         let limits = &self.limits;
         let errors = [
             limits.tracking_error,
@@ -37,8 +40,12 @@ impl Guard<'_> {
             && inside(limits.speed, speed)
             && errors.iter().all(|limit| limit.contains(0.0))
             && guards.into_iter().all(on);
-        let is_ideal = stays && self.rig.ideal().is_some();
-        is_ideal.then_some(IdealSteps { speed, pause })
+        let is_ideal = stays && self.rig.is_ideal();
+        is_ideal.then_some(IdealSteps {
+            requested,
+            speed,
+            pause,
+        })
     }
 
     /// [`Guard::step`] in such a run.
@@ -48,7 +55,7 @@ impl Guard<'_> {
     #[inline]
     pub fn step_ideally(
         &mut self,
-        IdealSteps { speed, pause }: IdealSteps,
+        steps: IdealSteps,
         targets: &[f64],
         reading: &mut Reading,
     ) -> Result<(), UnfinishedStep> {
@@ -66,25 +73,22 @@ impl Guard<'_> {
         }
         let rig = self
             .rig
-            .ideal()
+            .at_once()
             .filter(|_| is_allowed && inside(longest, moved));
         let Some(rig) = rig else {
-            return self.step(targets, pause, reading);
+            return self.step(targets, steps.pause, reading);
         };
-        rig.step_ideally(targets, speed, pause, reading);
+        let stepped = rig.step(targets, steps.requested, steps.pause, reading);
+        if stepped.is_err() || !reading.force.iter().all(|read| inside(force, *read)) {
+            return self.end_step(stepped, targets, steps.speed, reading);
+        }
         self.proposed = None;
         self.going.clear();
-        self.speed = Some(speed);
+        self.speed = Some(steps.speed);
         self.commanded.copy_from_slice(targets);
         self.settled = true;
-        if reading.force.iter().all(|read| inside(force, *read)) {
-            self.last_contact = reading.time;
-            return Ok(());
-        }
-        self.checked(reading).map_err(|fault| UnfinishedStep {
-            is_reached: true,
-            fault,
-        })
+        self.last_contact = reading.time;
+        Ok(())
     }
 }
 

@@ -190,20 +190,7 @@ impl<'rig> Guard<'rig> {
             let is_valid = speed > 0.0 && speed.is_finite();
             if let Some(rig) = self.rig.at_once().filter(|_| is_valid) {
                 let stepped = rig.step(targets, requested, pause, reading);
-                self.proposed = None;
-                self.going.clear();
-                let is_reached = stepped
-                    .as_ref()
-                    .map_or_else(|end| end.is_reached, |()| true);
-                if is_reached {
-                    self.note_speed(speed);
-                    self.commanded.copy_from_slice(targets);
-                    self.settled = true;
-                }
-                let read = self.or_hold(stepped.map_err(|end| end.fault));
-                return read
-                    .and_then(|()| self.checked(reading))
-                    .map_err(ended(is_reached));
+                return self.end_step(stepped, targets, speed, reading);
             }
         }
         let moved = self.move_to(targets, None);
@@ -213,6 +200,29 @@ impl<'rig> Guard<'rig> {
             .and_then(|()| self.read());
         *reading = read.map_err(|fault| UnfinishedStep { is_reached, fault })?;
         Ok(())
+    }
+
+    /// A step in one call, at this commanded speed \[m/s\], has ended, and its reading is checked.
+    fn end_step(
+        &mut self,
+        stepped: Result<(), UnfinishedStep>,
+        targets: &[f64],
+        speed: f64,
+        reading: &mut Reading,
+    ) -> Result<(), UnfinishedStep> {
+        self.proposed = None;
+        self.going.clear();
+        let is_reached = stepped
+            .as_ref()
+            .map_or_else(|end| end.is_reached, |()| true);
+        if is_reached {
+            self.note_speed(speed);
+            self.commanded.copy_from_slice(targets);
+            self.settled = true;
+        }
+        let read = self.or_hold(stepped.map_err(|end| end.fault));
+        read.and_then(|()| self.checked(reading))
+            .map_err(|fault| UnfinishedStep { is_reached, fault })
     }
 
     /// Stays for `seconds` of rig time.

@@ -388,14 +388,7 @@ impl VirtualRig {
 
 impl VirtualRig {
     /// [`WholeSteps::step`] of an ideal rig.
-    #[inline]
-    pub(super) fn step_ideally(
-        &mut self,
-        targets: &[f64],
-        speed: f64,
-        pause: f64,
-        reading: &mut Reading,
-    ) {
+    fn step_ideally(&mut self, targets: &[f64], speed: f64, pause: f64, reading: &mut Reading) {
         let mut travel: f64 = 0.0;
         for (axis, target) in self.axes.iter_mut().zip(targets) {
             travel = travel.max(axis.actuator.jump(*target));
@@ -429,11 +422,16 @@ impl WholeSteps for VirtualRig {
         pause: f64,
         reading: &mut Reading,
     ) -> Result<(), UnfinishedStep> {
+        let speed = speed.unwrap_or(OWN_SPEED);
+        if self.is_ideal {
+            self.step_ideally(targets, speed, pause, reading);
+            return Ok(());
+        }
         self.proposed = None;
         let sign = self.sign;
         self.aims.clear();
         self.aims.extend(targets.iter().map(|to| sign * to));
-        self.arrive(speed.unwrap_or(OWN_SPEED));
+        self.arrive(speed);
         self.rest(self.wait.unwrap_or(0.0));
         if pause > 0.0 {
             self.rest(pause);
@@ -534,8 +532,8 @@ impl Rig for VirtualRig {
         (self.wait.is_some() && self.axial.is_empty()).then_some(self)
     }
 
-    fn ideal(&mut self) -> Option<&mut VirtualRig> {
-        (self.is_ideal && self.axial.is_empty()).then_some(self)
+    fn is_ideal(&mut self) -> bool {
+        self.is_ideal && self.axial.is_empty()
     }
 
     fn traverse(

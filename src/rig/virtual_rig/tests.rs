@@ -232,8 +232,11 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
     let (mut once, mut stepwise) = (rig(ideal), rig(ideal));
     let mut reading = once.read().unwrap();
     for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
-        let rig = once.ideal().expect("an ideal rig");
-        rig.step_ideally(&[target], 0.01, 0.5, &mut reading);
+        assert!(once.is_ideal());
+        let whole = once.at_once().expect("an ideal rig");
+        whole
+            .step(&[target], Some(0.01), 0.5, &mut reading)
+            .unwrap();
         stepwise.propose(&[target], Some(0.01)).unwrap();
         stepwise.execute().unwrap();
         stepwise.pause(0.5).unwrap();
@@ -268,7 +271,7 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
         },
     ];
     for link in links {
-        assert!(rig(link).ideal().is_none(), "{link:?}");
+        assert!(!rig(link).is_ideal(), "{link:?}");
     }
     let others = [
         (specimen(5.0, 0.0), 1.0),
@@ -277,6 +280,6 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
     ];
     for (specimen, sign) in others {
         let mut rig = VirtualRig::new(ideal, AT_ONCE, Some(&specimen), sign);
-        assert!(rig.ideal().is_none());
+        assert!(!rig.is_ideal());
     }
 }

@@ -448,6 +448,10 @@ impl Rig for RecordedRig<'_> {
         steps.then_some(self)
     }
 
+    fn is_ideal(&mut self) -> bool {
+        self.at_once().is_some() && self.live().is_some_and(|rig| rig.is_ideal())
+    }
+
     fn traverse(
         &mut self,
         targets: &[f64],
