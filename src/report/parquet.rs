@@ -7,6 +7,7 @@ use polars::prelude::{
     Column, CompatLevel, DataFrame, PolarsError, PolarsResult, SchemaExt as _, Series, polars_err,
 };
 use polars_parquet::parquet::CowBuffer;
+use polars_parquet::parquet::compression::ZstdLevel;
 use polars_parquet::parquet::page::{DataPage, DataPageHeader};
 use polars_parquet::parquet::schema::Repetition;
 use polars_parquet::read::{
@@ -21,19 +22,24 @@ use polars_parquet::write::{
 };
 use rayon::prelude::*;
 
+/// zstd is fastest at this level; at a higher one, split numbers are hardly smaller.
+const LEVEL: i32 = 1;
+
 /// No statistics: no reader skips a row group of these files.
-const OPTIONS: WriteOptions = WriteOptions {
-    statistics: StatisticsOptions {
-        min_value: false,
-        max_value: false,
-        distinct_count: false,
-        null_count: false,
-        binary_statistics_truncate_length: None,
-    },
-    version: Version::V1,
-    compression: CompressionOptions::Zstd(None),
-    data_page_size: None,
-};
+fn options() -> PolarsResult<WriteOptions> {
+    Ok(WriteOptions {
+        statistics: StatisticsOptions {
+            min_value: false,
+            max_value: false,
+            distinct_count: false,
+            null_count: false,
+            binary_statistics_truncate_length: None,
+        },
+        version: Version::V1,
+        compression: CompressionOptions::Zstd(Some(ZstdLevel::try_new(LEVEL)?)),
+        data_page_size: None,
+    })
+}
 
 /// Columns that are compressed at the same time: a page is in memory several times meanwhile.
 const AT_A_TIME: usize = 8;
@@ -41,6 +47,7 @@ const AT_A_TIME: usize = 8;
 /// A file that is being written.
 pub struct ParquetFile<W: Write> {
     out: FileWriter<W>,
+    options: WriteOptions,
     /// One of each column.
     encodings: Vec<Encoding>,
 }
@@ -53,8 +60,13 @@ impl<W: Write> ParquetFile<W> {
     /// Two columns have one name.
     pub fn new(out: W, frame: &DataFrame, encodings: Vec<Encoding>) -> PolarsResult<Self> {
         let schema = frame.schema().to_arrow(CompatLevel::newest());
-        let out = FileWriter::try_new(out, schema, OPTIONS)?;
-        Ok(Self { out, encodings })
+        let options = options()?;
+        let out = FileWriter::try_new(out, schema, options)?;
+        Ok(Self {
+            out,
+            options,
+            encodings,
+        })
     }
 
     /// Writes the rows of a frame as a row group.
@@ -63,6 +75,7 @@ impl<W: Write> ParquetFile<W> {
     /// The rows cannot be written.
     pub fn write(&mut self, frame: &DataFrame) -> PolarsResult<()> {
         let kinds = self.out.parquet_schema().fields().to_vec();
+        let options = self.options;
         for batch in frame.iter_chunks(CompatLevel::newest(), false) {
             let rows = batch.len();
             if rows == 0 {
@@ -81,12 +94,12 @@ impl<W: Write> ParquetFile<W> {
                 } else {
                     **encoding
                 };
-                let pages = array_to_columns(*array, (*kind).clone(), OPTIONS, &[encoding])?;
+                let pages = array_to_columns(*array, (*kind).clone(), options, &[encoding])?;
                 let pages = pages.into_iter().flatten();
                 pages
                     .map(|page| {
                         let page = if is_split { split(page?) } else { page? };
-                        Ok(compress(page, Vec::new(), OPTIONS.compression)?)
+                        Ok(compress(page, Vec::new(), options.compression)?)
                     })
                     .collect()
             };

@@ -10,8 +10,8 @@ use polars_io::prelude::{CsvWriter, SerWriter as _};
 
 use crate::report::parquet::{Encoding, ParquetFile, in_a_pool};
 
-/// Rows of a chunk; in Parquet, a row group.
-const CHUNK: usize = 65_536;
+/// Rows of a chunk; in Parquet, a row group. A page of so many doubles is compressed in the cache.
+const CHUNK: usize = 16_384;
 
 /// One table.
 pub(crate) struct Table<'a> {

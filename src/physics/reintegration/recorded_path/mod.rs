@@ -234,8 +234,9 @@ pub struct Retrace<'a> {
     finer: u8,
     /// Number of its own steps so far.
     own_step: usize,
-    /// The nearest step of the record.
+    /// The nearest step of the record ([`nearest`]), and the step of its own with which the next one begins.
     step: usize,
+    next_begins: usize,
     piece: usize,
     /// The shift of the curve that begins with each branch; later branches keep their initial value.
     shifts: Vec<Shift>,
@@ -247,6 +248,24 @@ pub struct Retrace<'a> {
     speed: Speed,
     aside: Option<Aside>,
     departed: bool,
+    /// The present piece, if the next step may stay on it.
+    along: Option<Along>,
+}
+
+/// What a step along one piece needs to know of it.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    /// 1 or −1; 0 for a record without motion.
+    direction: f64,
+    shift: Shift,
+    /// Indices of the readings of the piece.
+    first: usize,
+    last: usize,
+    /// Positions at which other pieces of its curve begin, in those of the record \[m\].
+    from: f64,
+    to: f64,
+    /// Where its branch continues an earlier curve \[m\].
+    rejoins: f64,
 }
 
 /// The shift of a curve from its recorded position.
@@ -284,6 +303,7 @@ impl<'a> Retrace<'a> {
             finer,
             own_step: 0,
             step: 0,
+            next_begins: usize::from(finer.max(1)).div_ceil(2),
             piece: 0,
             shifts,
             turns,
@@ -291,6 +311,7 @@ impl<'a> Retrace<'a> {
             speed: Speed::default(),
             aside: None,
             departed: false,
+            along: None,
         }
     }
 
@@ -308,6 +329,20 @@ impl<'a> Retrace<'a> {
     /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step, which is passed with a velocity \[m/s\].
     #[inline]
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
+        let before = self.step;
+        self.own_step += 1;
+        if self.own_step == self.next_begins {
+            self.step += 1;
+            self.next_begins += usize::from(self.finer.max(1));
+        }
+        if let Some(read) = self.read_along(target) {
+            self.position = target;
+            return read;
+        }
+        self.pass_anywhere(target, velocity, before)
+    }
+
+    fn pass_anywhere(&mut self, target: f64, velocity: f64, before: usize) -> (f64, f64) {
         let speed = self
             .path
             .continuous
@@ -317,12 +352,77 @@ impl<'a> Retrace<'a> {
         let position = self.path.continuous.as_ref().map_or(target, |continuous| {
             continuous.position(target, speed.actual)
         });
-        let before = self.step;
-        self.own_step += 1;
-        self.step = nearest(self.own_step, self.finer);
         self.go(position, speed.actual, before);
         (self.position, self.speed) = (position, speed);
+        self.along = self.along();
         self.read()
+    }
+
+    /// Displacement and force at a target \[m\] on the present piece, next to the reading of the present step; None: it is not there, or the
+    /// actuator does not stop at it. The numbers are those of [`RecordedPath::at`].
+    #[inline]
+    fn read_along(&self, target: f64) -> Option<(f64, f64)> {
+        let along = self.along.as_ref()?;
+        let direction = along.direction;
+        let at = target - along.shift.position;
+        let leaves = (target - self.position) * direction < 0.0
+            || (target - along.rejoins) * direction > 0.0
+            || (at - along.from) * direction < 0.0
+            || (at - along.to) * direction > 0.0;
+        if leaves || self.step < along.first {
+            return None;
+        }
+        let readings = &self.path.readings[..=along.last];
+        let here = readings.get(self.step)?;
+        let off = at - here.target;
+        let (displacement, force) = if off == 0.0 {
+            (here.displacement, here.force)
+        } else {
+            let far = if off * direction > 0.0 {
+                readings.get(self.step + 1)?
+            } else {
+                readings[along.first..].get((self.step - along.first).checked_sub(1)?)?
+            };
+            let apart = far.target - here.target;
+            if apart == 0.0 || apart.abs() < off.abs() || apart.abs() < self.path.least {
+                return None;
+            }
+            let share = off / apart;
+            (
+                here.displacement + share * (far.displacement - here.displacement),
+                here.force + share * (far.force - here.force),
+            )
+        };
+        Some((displacement + (target - at), force + along.shift.force))
+    }
+
+    fn along(&self) -> Option<Along> {
+        if self.aside.is_some() || self.path.continuous.is_some() {
+            return None;
+        }
+        let (path, number) = (self.path, self.piece);
+        let piece = &path.pieces[number];
+        let branch = &path.branches[piece.branch];
+        let direction = branch.direction;
+        let next = path
+            .pieces
+            .get(number + 1)
+            .filter(|_| number < branch.last_piece);
+        let rejoins = next
+            .and_then(|next| next.rejoins)
+            .map(|left| self.turns[left]);
+        let endless = direction * f64::INFINITY;
+        Some(Along {
+            direction,
+            shift: self.shift(),
+            first: piece.first,
+            last: piece.last,
+            from: piece.before.map_or(-endless, |_| piece.begin.target),
+            to: piece
+                .after
+                .map_or(endless, |after| path.pieces[after].begin.target),
+            rejoins: rejoins.unwrap_or(endless),
+        })
     }
 
     /// Whether the re-run has departed from the record.
