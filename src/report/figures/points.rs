@@ -88,13 +88,10 @@ impl PointCollector {
         if !x.is_finite() || !y.is_finite() {
             return;
         }
-        let one = Segment {
-            count: 1,
-            extremes: [Numbered {
-                number: self.count,
-                x,
-                y,
-            }; 6],
+        let point = Numbered {
+            number: self.count,
+            x,
+            y,
         };
         self.count += 1;
         if let Some(last) = self
@@ -102,14 +99,17 @@ impl PointCollector {
             .last_mut()
             .filter(|last| last.count < self.capacity)
         {
-            *last = last.joined(&one);
+            last.add(point);
             return;
         }
         if self.segments.len() == 2 * SEGMENTS {
             self.segments = self.segments.chunks(2).map(Segment::merged).collect();
             self.capacity *= 2;
         }
-        self.segments.push(one);
+        self.segments.push(Segment {
+            count: 1,
+            extremes: [point; 6],
+        });
     }
 }
 
@@ -129,6 +129,24 @@ struct Segment {
 }
 
 impl Segment {
+    /// Adds the next point.
+    fn add(&mut self, point: Numbered) {
+        let [_, last, left, right, low, high] = &mut self.extremes;
+        self.count += 1;
+        *last = point;
+        let beyond = [
+            (point.x < left.x, left),
+            (point.x > right.x, right),
+            (point.y < low.y, low),
+            (point.y > high.y, high),
+        ];
+        for (is_beyond, extreme) in beyond {
+            if is_beyond {
+                *extreme = point;
+            }
+        }
+    }
+
     /// This segment joined with the next.
     fn joined(&self, next: &Self) -> Self {
         let [first, _, left, right, low, high] = self.extremes;
