@@ -266,6 +266,8 @@ struct Along {
     to: f64,
     /// Where its branch continues an earlier curve \[m\].
     rejoins: f64,
+    /// Number of readings between the present one and the one to which the last search led.
+    searched: usize,
 }
 
 /// The shift of a curve from its recorded position.
@@ -358,39 +360,54 @@ impl<'a> Retrace<'a> {
         self.read()
     }
 
-    /// Displacement and force at a target \[m\] on the present piece, next to the reading of the present step; None: it is not there, or the
-    /// actuator does not stop at it. The numbers are those of [`RecordedPath::at`].
+    /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it. The
+    /// numbers are those of [`RecordedPath::at`], but the search begins where the last one ended.
     #[inline]
-    fn read_along(&self, target: f64) -> Option<(f64, f64)> {
-        let along = self.along.as_ref()?;
+    fn read_along(&mut self, target: f64) -> Option<(f64, f64)> {
+        let least = self.path.least;
+        let along = self.along.as_mut()?;
         let direction = along.direction;
         let at = target - along.shift.position;
         let leaves = (target - self.position) * direction < 0.0
             || (target - along.rejoins) * direction > 0.0
             || (at - along.from) * direction < 0.0
             || (at - along.to) * direction > 0.0;
-        if leaves || self.step < along.first {
-            return None;
-        }
-        let readings = &self.path.readings[..=along.last];
-        let here = readings.get(self.step)?;
+        let readings = self.path.readings.get(along.first..=along.last)?;
+        let present = self.step.checked_sub(along.first)?;
+        let here = readings.get(present).filter(|_| !leaves)?;
         let off = at - here.target;
         let (displacement, force) = if off == 0.0 {
             (here.displacement, here.force)
         } else {
-            let far = if off * direction > 0.0 {
-                readings.get(self.step + 1)?
-            } else {
-                readings[along.first..].get((self.step - along.first).checked_sub(1)?)?
+            let onwards = off * direction > 0.0;
+            let away = |count: usize| {
+                let index = if onwards {
+                    present.checked_add(count)
+                } else {
+                    present.checked_sub(count)
+                };
+                index.and_then(|index| readings.get(index))
             };
-            let apart = far.target - here.target;
-            if apart == 0.0 || apart.abs() < off.abs() || apart.abs() < self.path.least {
-                return None;
+            // The readings of a piece go in one direction: the first one that is far enough.
+            let reach = off.abs().max(least);
+            let apart = |reading: &Reading| (reading.target - here.target).abs();
+            let reaches = |reading: &Reading| apart(reading) >= reach;
+            let mut count = along.searched.max(1);
+            while count > 1 && away(count - 1).is_none_or(reaches) {
+                count -= 1;
             }
-            let share = off / apart;
+            let mut far = away(count)?;
+            while !reaches(far) {
+                count += 1;
+                far = away(count)?;
+            }
+            along.searched = count;
+            let near = away(count - 1)?;
+            let near = if apart(near) < least { here } else { near };
+            let share = (at - near.target) / (far.target - near.target);
             (
-                here.displacement + share * (far.displacement - here.displacement),
-                here.force + share * (far.force - here.force),
+                near.displacement + share * (far.displacement - near.displacement),
+                near.force + share * (far.force - near.force),
             )
         };
         Some((displacement + (target - at), force + along.shift.force))
@@ -422,6 +439,7 @@ impl<'a> Retrace<'a> {
                 .after
                 .map_or(endless, |after| path.pieces[after].begin.target),
             rejoins: rejoins.unwrap_or(endless),
+            searched: self.along.map_or(1, |along| along.searched),
         })
     }
 

@@ -141,6 +141,38 @@ fn noise_makes_no_tangent() {
     assert!((force - 300.0).abs() < 12.0, "{force}");
 }
 
+/// With and without noise, in finer steps, near the recorded targets and many steps away: the search that begins where the last one ended
+/// finds the numbers of a search from the present reading, to the last bit.
+#[test]
+fn a_search_from_the_last_place_finds_the_same_numbers() {
+    for (noise, finer) in [(0.0, 1), (0.0, 4), (3.0, 1), (3.0, 2)] {
+        let targets = motion(&LOOPS, STEP);
+        let reading = |(step, target): (u32, &f64)| Reading {
+            target: *target,
+            displacement: target + 1e-5 * target.sin(),
+            force: 1000.0 * target + noise * (1.7 * f64::from(step)).sin(),
+        };
+        let noise = DeclaredNoise {
+            force: noise,
+            resolution: 0.0,
+        };
+        let readings = (0..).zip(&targets).map(reading).collect();
+        let path = RecordedPath::new(readings, None, 1000.0, noise).unwrap();
+        for off in [0.0, 0.3 * STEP, 7.4 * STEP] {
+            let (mut retrace, mut afresh) = (path.retrace(finer), path.retrace(finer));
+            let mut without_search = 0;
+            for target in motion(&LOOPS.map(|turn| turn + off), STEP / f64::from(finer)) {
+                afresh.along = None;
+                let before = retrace.along.map(|along| along.searched);
+                assert_eq!(retrace.move_to(target), afresh.move_to(target), "{off} m");
+                without_search +=
+                    u32::from(before.is_some() && retrace.read_along(target).is_some());
+            }
+            assert!(without_search > 400, "{without_search}");
+        }
+    }
+}
+
 /// Steps of `step` \[m\] from reversal to reversal.
 fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     let mut positions = vec![turns[0]];
