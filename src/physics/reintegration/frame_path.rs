@@ -52,7 +52,7 @@ pub struct FramePath {
 #[derive(Clone, Debug)]
 enum Bends {
     /// From the ground up: shear over storey drift; of a tested element, force over deformation.
-    Storeys(Vec<RecordedPath>),
+    Storeys(Vec<RecordedPath<'static>>),
     /// Initial K \[N/m\]; lag of each floor behind its target \[s\].
     Together(SymmetricBand, Vec<f64>),
 }
@@ -156,7 +156,7 @@ impl FramePath {
                             read.noise.resolution
                         },
                     };
-                    let readings = (0..readings.len()).map(at).collect();
+                    let readings: Vec<Reading> = (0..readings.len()).map(at).collect();
                     let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
                     let motion = (!passed.is_empty()).then_some(ContinuousMotion {
                         velocities: passed.as_slice(),
@@ -285,7 +285,7 @@ struct Floors {
 pub struct FrameRetrace<'a> {
     path: &'a FramePath,
     readings: &'a Perturbation,
-    storeys: Vec<(&'a RecordedPath, Retrace<'a>)>,
+    storeys: Vec<(&'a RecordedPath<'static>, Retrace<'a>)>,
     /// Number of its own steps so far.
     own_step: usize,
     /// The nearest step of the record.

@@ -54,7 +54,7 @@ pub fn rerun(
     input: &ImpactInput,
     until: Until,
     steps: u64,
-    path: &RecordedPath,
+    path: &RecordedPath<'_>,
     readings: &Perturbation,
 ) -> Result<Outcome, ImpactError> {
     let finer = readings.finer;
@@ -417,7 +417,7 @@ mod tests {
         }
     }
 
-    fn line() -> RecordedPath {
+    fn line() -> RecordedPath<'static> {
         let reading = |position: f64| Reading {
             target: position,
             displacement: position,

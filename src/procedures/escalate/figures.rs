@@ -259,7 +259,7 @@ fn over_each_other(
             } else {
                 String::new()
             },
-            points: impact.history.steps.iter().map(&of).collect(),
+            points: impact.history.steps.iter().map(|step| of(&step)).collect(),
             style: if index == last {
                 Style::line(palette::VERMILION, 2.0, DASHED)
             } else {

@@ -17,7 +17,7 @@ use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{
-    History, Identity, ImpactHistory, NamedResult, Outcome, ProcedureRecord, Record,
+    History, Identity, ImpactHistory, ImpactSteps, NamedResult, Outcome, ProcedureRecord, Record,
 };
 use psd_plan::schema::ResultKind;
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
@@ -179,13 +179,9 @@ impl<V> Sink<V> for Stopped<'_> {
     }
 }
 
-const fn without_steps(
-    time_step: f64,
-    critical_time_step: f64,
-    ending: ImpactEnding,
-) -> ImpactHistory {
+fn without_steps(time_step: f64, critical_time_step: f64, ending: ImpactEnding) -> ImpactHistory {
     ImpactHistory {
-        steps: Vec::new(),
+        steps: ImpactSteps::default(),
         ending,
         frame: None,
         time_step,

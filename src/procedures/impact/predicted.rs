@@ -111,7 +111,7 @@ fn rows(history: &ImpactHistory) -> Vec<Vec<String>> {
         let largest = history
             .steps
             .iter()
-            .map(|step| (read(step).abs(), step.time))
+            .map(|step| (read(&step).abs(), step.time))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         largest.map_or_else(String::new, |(value, time)| {
             format!(

@@ -122,13 +122,13 @@ pub(super) fn of_impact(
     summary: Option<&ImpactSummary>,
     history: &ImpactHistory,
 ) -> impl Iterator<Item = NamedResult> {
-    let energies = history.steps.last().map(|last| &last.energies);
+    let energies = history.steps.last().map(|last| last.energies);
     OF_IMPACT.into_iter().map(move |(kind, value)| {
         kind.found(match value {
             Value::OfRun(read) | Value::AtSteps(read) | Value::Between(read, _) => {
                 summary.and_then(read)
             }
-            Value::Energy(read, _) => energies.map(read),
+            Value::Energy(read, _) => energies.as_ref().map(read),
         })
     })
 }

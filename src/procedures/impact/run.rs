@@ -23,8 +23,8 @@ use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
-    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StillGrowing,
-    StruckFrame,
+    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, ImpactSteps, NamedResult,
+    StillGrowing, StruckFrame,
 };
 use psd_plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use psd_rig::Reading;
@@ -39,7 +39,7 @@ pub(crate) fn perform(
     let setting = match Setting::evaluate(plan, whole, striker, inputs, session) {
         Ok(setting) => setting,
         Err(stop) => {
-            let history = history_of(plan, None, Vec::new(), Vec::new());
+            let history = history_of(plan, None, ImpactSteps::default(), Vec::new());
             return Performed {
                 results: results(None, &TrackingSummary::default(), &history),
                 history: History::Impact(history),
@@ -182,7 +182,7 @@ fn on_storey(
 fn history_of(
     plan: &Impact,
     setting: Option<&Setting>,
-    steps: Vec<ImpactStep>,
+    steps: ImpactSteps,
     floors: Vec<FloorStep>,
 ) -> ImpactHistory {
     let properties = setting
@@ -210,7 +210,7 @@ fn history_of(
 /// The record of an impact in progress.
 struct ImpactSoFar {
     /// The struck degree of freedom and the striker.
-    steps: Vec<ImpactStep>,
+    steps: ImpactSteps,
     /// Every floor of a frame.
     floors: Vec<FloorStep>,
     summary: StruckSummary,
@@ -224,7 +224,7 @@ impl ImpactSoFar {
             .unwrap_or(usize::MAX)
             .min(100_000);
         Self {
-            steps: Vec::with_capacity(capacity),
+            steps: ImpactSteps::with_capacity(capacity),
             floors: Vec::new(),
             summary,
             tracking: TrackingSummary::default(),
@@ -276,7 +276,7 @@ struct Struck<'a, V: HasTangents> {
     solver: ImpactSolver<V>,
     until: Until,
     before: u64,
-    steps: &'a mut Vec<ImpactStep>,
+    steps: &'a mut ImpactSteps,
     floors: &'a mut Vec<FloorStep>,
     summary: &'a mut StruckSummary,
 }
@@ -334,7 +334,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
 
     fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
         let state = self.solver.state();
-        self.steps.push(ImpactStep {
+        self.steps.push(&ImpactStep {
             step: state.step,
             time: state.time,
             wall_time,
@@ -375,9 +375,9 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             computed: reading.displacement[struck],
             displacement: reading.displacement[struck],
             restoring_force: reading.force[struck],
-            ..*last
+            ..last
         };
-        self.steps.push(step);
+        self.steps.push(&step);
         let gravity_force = self.solver.gravity_force(V::view_of(&reading.displacement));
         let elements = &self.solver.structure().elements;
         self.summary

@@ -8,7 +8,7 @@ use crate::procedures::frame::tables::{
     written_rows,
 };
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
-use crate::report::tables::{Column as WrittenColumn, Table, numeric, written};
+use crate::report::tables::{Column as WrittenColumn, Table, numeric, written_one_by_one};
 use psd_physics::structure::assemblies::Assemblies;
 use psd_plan::record::{FloorStep, ImpactHistory, ImpactStep, StruckFrame};
 use psd_plan::schema::{Column, columns};
@@ -50,7 +50,7 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
 
 /// An impact on a storey: the step of the striker, and that of the floors.
 struct StruckStep<'a> {
-    impact: &'a ImpactStep,
+    impact: ImpactStep,
     floors: &'a FloorStep,
 }
 
@@ -115,7 +115,7 @@ fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
 
 /// The table of an impact on a storey.
 fn storey_impact(
-    steps: &[ImpactStep],
+    steps: impl Iterator<Item = ImpactStep>,
     floors: &[FloorStep],
     scaled: Option<&Assemblies>,
 ) -> Vec<WrittenColumn> {
@@ -142,7 +142,7 @@ pub(crate) fn of_elements<'a>(
     assemblies: Option<Assemblies>,
 ) -> Option<Table<'a>> {
     let floors = &history.frame.as_ref()?.floors;
-    let number = |step: usize| history.steps[step].step;
+    let number = |step: usize| history.steps.get(step).map_or(0, |step| step.step);
     frame::tables::of_elements(name, floors, number, assemblies)
 }
 
@@ -153,13 +153,15 @@ pub(crate) fn table(
     scaled: Option<Assemblies>,
 ) -> Table<'_> {
     let Some(StruckFrame { floors, .. }) = &history.frame else {
-        return Table::of(name, &history.steps, |steps| written(STEPS, steps));
+        return Table::of_steps(name, history.steps.len(), 1, |range| {
+            written_one_by_one(STEPS, history.steps.range(range))
+        });
     };
     let storeys = floors
         .first()
         .map_or(1, |floors| floors.floors.computed.len());
     let columns = move |range: Range<usize>| {
-        let steps = &history.steps[range.clone()];
+        let steps = history.steps.range(range.clone());
         storey_impact(steps, &floors[range], scaled.as_ref())
     };
     Table::of_steps(name, floors.len(), storeys, columns)

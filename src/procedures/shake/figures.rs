@@ -200,6 +200,6 @@ fn energy(history: &ShakeHistory) -> Chart {
         ),
         EnergyCurve::weights(|step: &ShakeStep| step.energies.gravity),
     ];
-    let curves = nonzero_curves(&history.steps, |step| step.floors.time, curves);
+    let curves = nonzero_curves(&history.steps.iter(), |step| step.floors.time, curves);
     over_time(Quantity::of("Energy", Dimension::ENERGY), curves)
 }

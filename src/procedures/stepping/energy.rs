@@ -1,6 +1,8 @@
 //! The energy balance of a procedure that integrates: an observation if it does not close, its curves, its table. In: energies. Out: an
 //! event, series of a chart, a table of a report. It knows no procedure.
 
+use std::borrow::Borrow;
+
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::figures::chart::{DASH_DOT, DASHED, LONG, Series, Style, palette};
 use crate::report::number;
@@ -62,18 +64,21 @@ impl<S> EnergyCurve<S> {
 
 /// The curves of the energies that are not 0 throughout; `time` gives the simulated time of a step \[s\].
 pub(crate) fn nonzero_curves<S>(
-    steps: &[S],
+    steps: &(impl Iterator<Item = impl Borrow<S>> + Clone),
     time: fn(&S) -> f64,
     curves: impl IntoIterator<Item = EnergyCurve<S>>,
 ) -> Vec<Series> {
     curves
         .into_iter()
-        .filter(|curve| steps.iter().any(|step| (curve.read)(step) != 0.0))
+        .filter(|curve| {
+            let mut steps = steps.clone();
+            steps.any(|step| (curve.read)(step.borrow()) != 0.0)
+        })
         .map(|curve| Series {
             label: curve.label.to_owned(),
             points: steps
-                .iter()
-                .map(|step| (time(step), (curve.read)(step)))
+                .clone()
+                .map(|step| (time(step.borrow()), (curve.read)(step.borrow())))
                 .collect(),
             style: curve.style,
         })

@@ -87,16 +87,44 @@ const BLOCK: usize = 128;
 
 /// All columns of these rows.
 pub(crate) fn written<T>(columns: &[TableColumn<T>], rows: &[T]) -> Vec<Written> {
-    let mut all: Vec<Box<dyn Cells<T> + '_>> = columns
-        .iter()
-        .map(|column| column.cells(rows.len()))
-        .collect();
-    for block in rows.chunks(BLOCK) {
-        for cells in &mut all {
+    let mut filling = AllCells::new(columns, rows.len());
+    rows.chunks(BLOCK).for_each(|block| filling.add(block));
+    filling.written()
+}
+
+/// All columns of rows that are kept in another form.
+pub(crate) fn written_one_by_one<T>(
+    columns: &[TableColumn<T>],
+    mut rows: impl ExactSizeIterator<Item = T>,
+) -> Vec<Written> {
+    let mut filling = AllCells::new(columns, rows.len());
+    let mut block = Vec::with_capacity(BLOCK);
+    while rows.len() > 0 {
+        block.clear();
+        block.extend(rows.by_ref().take(BLOCK));
+        filling.add(&block);
+    }
+    filling.written()
+}
+
+/// The cells of all columns.
+struct AllCells<'a, T>(Vec<Box<dyn Cells<T> + 'a>>);
+
+impl<'a, T: 'a> AllCells<'a, T> {
+    fn new(columns: &[TableColumn<T>], rows: usize) -> Self {
+        Self(columns.iter().map(|column| column.cells(rows)).collect())
+    }
+
+    /// Adds rows, few enough to stay in the cache meanwhile.
+    fn add(&mut self, block: &[T]) {
+        for cells in &mut self.0 {
             cells.add(block);
         }
     }
-    all.into_iter().map(Cells::written).collect()
+
+    fn written(self) -> Vec<Written> {
+        self.0.into_iter().map(Cells::written).collect()
+    }
 }
 
 /// The numeric columns of a table.

@@ -16,7 +16,7 @@ use super::output::sink::{FileDigest, OutputSink, put_chunks};
 use super::run::Run;
 use crate::procedures;
 use TableColumn::{Integer, Number};
-pub(crate) use column::{TableColumn, each_once, numeric, written};
+pub(crate) use column::{TableColumn, each_once, numeric, written, written_one_by_one};
 use psd_plan::Format;
 use psd_plan::record::Drift;
 use psd_plan::record::remote::DrivenStep;

@@ -449,7 +449,7 @@ impl Rig for RecordedRig<'_> {
     }
 
     fn is_ideal(&mut self) -> bool {
-        self.at_once().is_some() && self.live().is_some_and(|rig| rig.is_ideal())
+        self.at_once().is_some() && self.live().is_some_and(Rig::is_ideal)
     }
 
     fn traverse(

@@ -35,9 +35,9 @@ fn unload() -> ProcedureKind {
     })
 }
 
-fn steps(record: &Record, procedure: usize) -> &[ImpactStep] {
+fn steps(record: &Record, procedure: usize) -> Vec<ImpactStep> {
     match &record.procedures[procedure].history {
-        History::Impact(impact) => &impact.steps,
+        History::Impact(impact) => impact.steps.iter().collect(),
         other => panic!("{other:?}"),
     }
 }

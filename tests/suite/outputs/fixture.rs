@@ -171,7 +171,7 @@ pub fn finished() -> Finished {
             number("energy_error", Some(error), None, Dimension::NUMBER),
         ],
         history: History::Impact(ImpactHistory {
-            steps,
+            steps: steps.into_iter().collect(),
             frame: None,
             time_step: TIME_STEP,
             critical_time_step: 0.0347,

@@ -14,14 +14,14 @@ impl Retrace<'_> {
     }
 }
 
-fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
+fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath<'static> {
     let reading = |target: &f64| Reading {
         target: *target,
         displacement: target + 1e-4,
         force: force(*target),
     };
     RecordedPath::new(
-        targets.iter().map(reading).collect(),
+        targets.iter().map(reading).collect::<Vec<_>>(),
         None,
         1000.0,
         DeclaredNoise::NONE,
@@ -43,7 +43,7 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
             ..path.readings[0]
         }
     );
-    for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
+    for (target, reading) in TARGETS.iter().zip(&*path.readings).skip(1) {
         assert_eq!(
             retrace.move_to(*target),
             (reading.displacement, reading.force)
@@ -124,7 +124,7 @@ fn noise_makes_no_tangent() {
         }
     };
     let path = RecordedPath::new(
-        (0..200).map(readings).collect(),
+        (0..200).map(readings).collect::<Vec<_>>(),
         None,
         1000.0,
         DeclaredNoise {
@@ -156,7 +156,7 @@ fn a_search_from_the_last_place_finds_the_same_numbers() {
             force: noise,
             resolution: 0.0,
         };
-        let readings = (0..).zip(&targets).map(reading).collect();
+        let readings: Vec<_> = (0..).zip(&targets).map(reading).collect();
         let path = RecordedPath::new(readings, None, 1000.0, noise).unwrap();
         for off in [0.0, 0.3 * STEP, 7.4 * STEP] {
             let (mut retrace, mut afresh) = (path.retrace(finer), path.retrace(finer));
@@ -187,14 +187,14 @@ fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     positions
 }
 
-fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
+fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath<'static> {
     let reading = |target: &f64| Reading {
         target: *target,
         displacement: *target,
         force: model.move_to(*target),
     };
     RecordedPath::new(
-        targets.iter().map(reading).collect(),
+        targets.iter().map(reading).collect::<Vec<_>>(),
         None,
         1000.0,
         DeclaredNoise::NONE,
@@ -203,7 +203,7 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
 }
 
 /// The largest force error of the re-run.
-fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
+fn worst(path: &RecordedPath<'_>, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
     let mut retrace = path.retrace(1);
     model.move_to(targets[0]);
     targets[1..]

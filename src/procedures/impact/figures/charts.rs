@@ -5,7 +5,7 @@ use crate::report::figures::chart::{
     Band, Chart, DASHED, DOTTED, Quantity, Reference, SOLID, Series, Style, palette,
 };
 use psd_physics::statistics::samples::peak;
-use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
+use psd_plan::record::{ImpactHistory, ImpactStep, ImpactSteps, StepState};
 use psd_text::units::Dimension;
 
 /// Displacement of structure and striker, contact shaded, required bounds as lines.
@@ -96,11 +96,11 @@ pub(crate) fn contact_force(history: &ImpactHistory, limits: &[Reference]) -> Ch
     let mut chart = against_time(history, Quantity::of("Contact force", Dimension::FORCE));
     let points = history
         .steps
-        .windows(2)
-        .flat_map(|pair| {
+        .pairs()
+        .flat_map(|(before, step)| {
             [
-                (pair[0].time, pair[1].contact_force),
-                (pair[1].time, pair[1].contact_force),
+                (before.time, step.contact_force),
+                (step.time, step.contact_force),
             ]
         })
         .collect();
@@ -157,7 +157,7 @@ pub(crate) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
         e.striker + e.structure + e.restoring + e.damping + e.contact_loss
     };
     let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
-    chart.series = nonzero_curves(&history.steps, |step| step.time, parts);
+    chart.series = nonzero_curves(&history.steps.iter(), |step| step.time, parts);
     chart.series.push(series(
         history,
         "total",
@@ -214,12 +214,12 @@ pub(crate) fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
 }
 
 /// The intervals of time spent in `state`: a step's state holds from the step before to it.
-fn periods(steps: &[ImpactStep], state: StepState) -> Vec<(f64, f64)> {
+fn periods(steps: &ImpactSteps, state: StepState) -> Vec<(f64, f64)> {
     let mut periods: Vec<(f64, f64)> = Vec::new();
-    for pair in steps.windows(2).filter(|pair| pair[1].state == state) {
+    for (before, step) in steps.pairs().filter(|(_, step)| step.state == state) {
         match periods.last_mut() {
-            Some(last) if last.1 == pair[0].time => last.1 = pair[1].time,
-            _ => periods.push((pair[0].time, pair[1].time)),
+            Some(last) if last.1 == before.time => last.1 = step.time,
+            _ => periods.push((before.time, step.time)),
         }
     }
     periods
@@ -228,7 +228,7 @@ fn periods(steps: &[ImpactStep], state: StepState) -> Vec<(f64, f64)> {
 pub(crate) fn series(
     history: &ImpactHistory,
     label: &str,
-    read: fn(&ImpactStep) -> f64,
+    read: impl Fn(&ImpactStep) -> f64,
     style: Style,
 ) -> Series {
     Series {
@@ -236,7 +236,7 @@ pub(crate) fn series(
         points: history
             .steps
             .iter()
-            .map(|step| (step.time, read(step)))
+            .map(|step| (step.time, read(&step)))
             .collect(),
         style,
     }

@@ -190,11 +190,11 @@ fn points(kind: FigureKind, ImpactHistory { steps, .. }: &ImpactHistory) -> Opti
             .map(|step| (step.time, step.striker_velocity))
             .collect(),
         FigureKind::ContactForce => steps
-            .windows(2)
-            .flat_map(|pair| {
+            .pairs()
+            .flat_map(|(before, step)| {
                 [
-                    (pair[0].time, pair[1].contact_force),
-                    (pair[1].time, pair[1].contact_force),
+                    (before.time, step.contact_force),
+                    (step.time, step.contact_force),
                 ]
             })
             .collect(),

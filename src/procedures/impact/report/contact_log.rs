@@ -4,7 +4,7 @@
 
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
-use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
+use psd_plan::record::{ImpactHistory, ImpactSteps, StepState};
 use psd_text::units::Dimension;
 
 /// Contact periods printed; the tables hold every step.
@@ -70,11 +70,10 @@ pub(crate) fn table(history: &ImpactHistory, contacts: Option<f64>, body: &mut V
 }
 
 /// A step's force is its mean over the time since the step before; step 0 has none.
-fn periods(steps: &[ImpactStep]) -> Vec<Period> {
+fn periods(steps: &ImpactSteps) -> Vec<Period> {
     let mut periods: Vec<Period> = Vec::new();
     let mut touching = false;
-    for pair in steps.windows(2) {
-        let (before, step) = (&pair[0], &pair[1]);
+    for (before, step) in steps.pairs() {
         let touched = std::mem::replace(&mut touching, step.state != StepState::Free);
         if !touching {
             continue;
@@ -105,6 +104,7 @@ mod tests {
     use super::*;
     use psd_physics::impact::energy::Energies;
     use psd_physics::tracking::monitor::Tracking;
+    use psd_plan::record::ImpactStep;
 
     #[test]
     fn consecutive_steps_in_contact_are_one_period() {
@@ -134,7 +134,7 @@ mod tests {
             step(3, StepState::Free, 0.0),
             step(4, StepState::Contact, 5.0),
         ];
-        let found = periods(&steps);
+        let found = periods(&steps.into_iter().collect());
         assert_eq!(
             found,
             [

@@ -24,7 +24,7 @@ use psd_physics::reintegration::recorded_path::{ContinuousMotion, Reading, Recor
 use psd_physics::structure::substructures::Substructures;
 use psd_plan::formula::Formula;
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{ImpactHistory, ImpactStep, NamedResult};
+use psd_plan::record::{ImpactHistory, NamedResult};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
@@ -61,13 +61,13 @@ impl ImpactUncertainty<'_> {
     pub(crate) fn propagate(
         &self,
         setting: &Setting,
-        steps: &[ImpactStep],
+        readings: &[Reading],
         recorded: &ImpactSummary,
         results: &mut [NamedResult],
         progress: Progress<'_, Stop>,
     ) -> Result<(), Unknown<Stop>> {
         let path = self
-            .path(setting, steps)
+            .path(setting, readings)
             .ok_or_else(|| "nothing was recorded".to_owned())?;
         let mut evaluate = RecordedImpact {
             uncertainty: self,
@@ -89,7 +89,7 @@ impl ImpactUncertainty<'_> {
             1,
             self.sources()?,
             RecordedValues {
-                steps: steps.len(),
+                steps: readings.len(),
                 reported,
                 nominal: Some(RecordedImpact::evaluation(&unperturbed, setting)),
             },
@@ -100,16 +100,10 @@ impl ImpactUncertainty<'_> {
     }
 
     /// The recorded path; None without readings.
-    fn path(&self, setting: &Setting, steps: &[ImpactStep]) -> Option<RecordedPath> {
-        let readings = steps.iter().map(|step| Reading {
-            target: step.command,
-            displacement: step.displacement,
-            force: step.restoring_force,
-        });
-        let (input, readings) = (&setting.input, readings.collect::<Vec<Reading>>());
-        let velocities = (self.plan.stepping.mode != Mode::RampAndHold).then(|| {
-            predicted_velocities(input, self.plan.until, setting.steps().count, &readings)
-        });
+    fn path<'r>(&self, setting: &Setting, readings: &'r [Reading]) -> Option<RecordedPath<'r>> {
+        let input = &setting.input;
+        let velocities = (self.plan.stepping.mode != Mode::RampAndHold)
+            .then(|| predicted_velocities(input, self.plan.until, setting.steps().count, readings));
         let motion = velocities.as_deref().map(|velocities| ContinuousMotion {
             velocities,
             time_step: input.time_step,
@@ -219,9 +213,13 @@ impl<'a> UncertaintyInputs<'a> {
                 results,
                 progress,
             ),
-            (Self::Point(point), _) => {
-                point.propagate(setting, &history.steps, summary, results, progress)
-            }
+            (Self::Point(point), _) => point.propagate(
+                setting,
+                history.steps.readings(),
+                summary,
+                results,
+                progress,
+            ),
             (Self::Storey(_), None) => Ok(()),
         }
     }
@@ -241,7 +239,7 @@ impl<'a> UncertaintyInputs<'a> {
 struct RecordedImpact<'a, 'run> {
     uncertainty: &'a ImpactUncertainty<'run>,
     setting: &'a Setting,
-    path: RecordedPath,
+    path: RecordedPath<'a>,
     /// Number of values of an evaluation.
     length: usize,
 }

@@ -27,9 +27,9 @@ fn plan(impact: Impact) -> Plan {
     elastic_plan(327.65, vec![ProcedureKind::Impact(impact)])
 }
 
-fn steps(record: &Record) -> &[ImpactStep] {
+fn steps(record: &Record) -> Vec<ImpactStep> {
     match &record.procedures[0].history {
-        History::Impact(impact) => &impact.steps,
+        History::Impact(impact) => impact.steps.iter().collect(),
         other => panic!("{other:?}"),
     }
 }
@@ -171,7 +171,7 @@ fn a_run_that_ends_early_reports_that_its_maximum_was_not_reached() {
                 .any(|event| event.kind == EventKind::Remark && event.text.contains(text))
         };
         assert!(has_event("did not stop"));
-        let last = steps(&record).last().unwrap();
+        let last = *steps(&record).last().unwrap();
         let largest = steps(&record)
             .iter()
             .map(|step| step.displacement)
@@ -204,7 +204,7 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     let record = run(&plan, &mut rig, &mut crate::run::Unwatched);
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
     assert!(!record.procedures[0].complete);
-    let last = steps(&record).last().unwrap();
+    let last = *steps(&record).last().unwrap();
     assert!(last.displacement <= 0.1 && last.displacement > 0.07);
     let largest = steps(&record)
         .iter()
@@ -224,7 +224,8 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     };
     let record = run_unwatched(&plan);
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
-    let (last, before) = steps(&record).split_last().unwrap();
+    let steps = steps(&record);
+    let (last, before) = steps.split_last().unwrap();
     assert!(
         last.restoring_force > 30.0 && before.iter().all(|step| step.restoring_force <= 30.0),
         "{last:?}"
@@ -257,7 +258,8 @@ fn an_energy_error_past_its_limit_aborts_after_recording_the_step() {
         "{:?}",
         record.outcome
     );
-    let (last, before) = steps(&record).split_last().unwrap();
+    let steps = steps(&record);
+    let (last, before) = steps.split_last().unwrap();
     assert!((last.energies.error / 5.0).abs() > 1e-6);
     assert!(
         before

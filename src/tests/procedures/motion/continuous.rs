@@ -12,10 +12,10 @@ use psd_testing::journal::AlterEntry as _;
 const STIFFNESS: f64 = 300.0;
 const SCALE: f64 = 100.0;
 
-fn steps(record: &Record) -> &[ImpactStep] {
+fn steps(record: &Record) -> Vec<ImpactStep> {
     assert_eq!(record.outcome, Outcome::Completed);
     match &record.procedures.last().unwrap().history {
-        History::Impact(impact) => &impact.steps,
+        History::Impact(impact) => impact.steps.iter().collect(),
         other => panic!("{other:?}"),
     }
 }
@@ -57,7 +57,7 @@ const CONTINUOUS: Mode = Mode::Continuous { time_scale: SCALE };
 /// Energy that the structure has lost at the end \[J\]: initial energy minus final energy.
 fn lost(plan: &Plan) -> f64 {
     let record = run_unwatched(plan);
-    let last = steps(&record).last().unwrap();
+    let last = *steps(&record).last().unwrap();
     0.5 * STIFFNESS * (1e-4 - last.computed * last.computed) - 0.5 * last.velocity * last.velocity
 }
 

@@ -82,7 +82,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     let before = results.clone();
     let found = uncertainty.propagate(
         &setting,
-        &history.steps,
+        history.steps.readings(),
         &summary,
         &mut results,
         &mut |_, _| Ok(()),
