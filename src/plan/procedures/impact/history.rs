@@ -241,6 +241,11 @@ impl ImpactSteps {
         self.iter().zip(self.range(1..self.len()))
     }
 
+    #[must_use]
+    pub fn states(&self) -> &[StepState] {
+        &self.states
+    }
+
     /// What was commanded and read, step by step.
     #[must_use]
     pub fn readings(&self) -> &[Reading] {

@@ -215,11 +215,19 @@ pub(crate) fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
 
 /// The intervals of time spent in `state`: a step's state holds from the step before to it.
 fn periods(steps: &ImpactSteps, state: StepState) -> Vec<(f64, f64)> {
-    let mut periods: Vec<(f64, f64)> = Vec::new();
-    for (before, step) in steps.pairs().filter(|(_, step)| step.state == state) {
-        match periods.last_mut() {
-            Some(last) if last.1 == before.time => last.1 = step.time,
-            _ => periods.push((before.time, step.time)),
+    let time = |index: usize| steps.get(index).map_or(f64::NAN, |step| step.time);
+    let mut periods = Vec::new();
+    let mut last = 0;
+    for alike in steps
+        .states()
+        .get(1..)
+        .unwrap_or_default()
+        .chunk_by(StepState::eq)
+    {
+        let before = last;
+        last += alike.len();
+        if alike[0] == state {
+            periods.push((time(before), time(last)));
         }
     }
     periods
