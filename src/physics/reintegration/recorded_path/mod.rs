@@ -268,6 +268,8 @@ struct Along {
     to: f64,
     /// Where its branch continues an earlier curve \[m\].
     rejoins: f64,
+    /// Tangent beyond its last reading \[N/m\].
+    end_tangent: f64,
     /// Number of readings between the present one and the one to which the last search led.
     searched: usize,
 }
@@ -378,10 +380,22 @@ impl<'a> Retrace<'a> {
         let present = self.step.checked_sub(along.first)?;
         let here = readings.get(present).filter(|_| !leaves)?;
         let off = at - here.target;
+        let onwards = off * direction > 0.0;
+        // The readings of a piece go in one direction: the first one that is far enough.
+        let reach = off.abs().max(least);
+        let apart = |reading: &Reading| (reading.target - here.target).abs();
+        let reaches = |reading: &Reading| apart(reading) >= reach;
+        let end = readings.last()?;
         let (displacement, force) = if off == 0.0 {
             (here.displacement, here.force)
+        } else if onwards && !reaches(end) {
+            let end = if apart(end) < least { here } else { end };
+            let beyond = at - end.target;
+            (
+                end.displacement + beyond,
+                end.force + along.end_tangent * beyond,
+            )
         } else {
-            let onwards = off * direction > 0.0;
             let away = |count: usize| {
                 let index = if onwards {
                     present.checked_add(count)
@@ -390,10 +404,6 @@ impl<'a> Retrace<'a> {
                 };
                 index.and_then(|index| readings.get(index))
             };
-            // The readings of a piece go in one direction: the first one that is far enough.
-            let reach = off.abs().max(least);
-            let apart = |reading: &Reading| (reading.target - here.target).abs();
-            let reaches = |reading: &Reading| apart(reading) >= reach;
             let mut count = along.searched.max(1);
             while count > 1 && away(count - 1).is_none_or(reaches) {
                 count -= 1;
@@ -441,6 +451,7 @@ impl<'a> Retrace<'a> {
                 .after
                 .map_or(endless, |after| path.pieces[after].begin.target),
             rejoins: rejoins.unwrap_or(endless),
+            end_tangent: piece.end_tangent,
             searched: self.along.map_or(1, |along| along.searched),
         })
     }
