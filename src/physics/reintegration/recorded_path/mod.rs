@@ -270,6 +270,8 @@ struct Along {
     rejoins: f64,
     /// Tangent beyond its last reading \[N/m\].
     end_tangent: f64,
+    /// The last step of the record at which the motion may still be on it, without having missed a loop.
+    matches_until: usize,
     /// Number of readings between the present one and the one to which the last search led.
     searched: usize,
 }
@@ -377,8 +379,13 @@ impl<'a> Retrace<'a> {
             || (at - along.from) * direction < 0.0
             || (at - along.to) * direction > 0.0;
         let readings = self.path.readings.get(along.first..=along.last)?;
-        let present = self.step.checked_sub(along.first)?;
-        let here = readings.get(present).filter(|_| !leaves)?;
+        if leaves || self.step > along.matches_until {
+            return None;
+        }
+        // Of a motion that is late, the last one.
+        let last = readings.len().checked_sub(1)?;
+        let present = self.step.checked_sub(along.first)?.min(last);
+        let here = readings.get(present)?;
         let off = at - here.target;
         let onwards = off * direction > 0.0;
         // The readings of a piece go in one direction: the first one that is far enough.
@@ -452,6 +459,11 @@ impl<'a> Retrace<'a> {
                 .map_or(endless, |after| path.pieces[after].begin.target),
             rejoins: rejoins.unwrap_or(endless),
             end_tangent: piece.end_tangent,
+            matches_until: if piece.branch + 2 < path.branches.len() {
+                path.branches[piece.branch + 1].end
+            } else {
+                usize::MAX
+            },
             searched: self.along.map_or(1, |along| along.searched),
         })
     }

@@ -158,16 +158,25 @@ fn a_search_from_the_last_place_finds_the_same_numbers() {
         };
         let readings: Vec<_> = (0..).zip(&targets).map(reading).collect();
         let path = RecordedPath::new(readings, None, 1000.0, noise).unwrap();
-        for off in [0.0, 0.3 * STEP, 7.4 * STEP] {
+        for (off, late) in [
+            (0.0, 0),
+            (0.3 * STEP, 0),
+            (7.4 * STEP, 0),
+            (0.0, 9),
+            (-2.3 * STEP, 60),
+        ] {
             let (mut retrace, mut afresh) = (path.retrace(finer), path.retrace(finer));
             let mut without_search = 0;
-            for target in motion(&LOOPS.map(|turn| turn + off), STEP / f64::from(finer)) {
+            let moved = motion(&LOOPS.map(|turn| turn + off), STEP / f64::from(finer));
+            let waiting = std::iter::repeat_n(moved[0], late * usize::from(finer));
+            for target in waiting.chain(moved.iter().copied()) {
                 afresh.along = None;
                 let before = retrace.along.map(|along| along.searched);
                 assert_eq!(retrace.move_to(target), afresh.move_to(target), "{off} m");
                 without_search +=
                     u32::from(before.is_some() && retrace.read_along(target).is_some());
             }
+            assert_eq!(retrace.departed(), afresh.departed());
             assert!(without_search > 400, "{without_search}");
         }
     }
