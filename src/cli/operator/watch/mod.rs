@@ -299,7 +299,7 @@ impl Observer for Watcher {
     }
 
     fn step_done(&mut self, report: &StepReport) {
-        // To look at the clock takes as long as a step of a simulation, which is shorter than a person notices.
+        // A look at the clock takes as long as a part of a simulated step. Sixteen of these are over before a person notices.
         if self.live.is_some() || report.step.is_multiple_of(16) {
             let now = Instant::now();
             self.pace.step_done(report.step, now);
