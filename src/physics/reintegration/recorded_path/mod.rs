@@ -152,75 +152,101 @@ impl<'r> RecordedPath<'r> {
     }
 
     /// Displacement and force at `position` \[m\] on the curve of `piece`, searched from the reading of `step`.
-    fn at(&self, piece: usize, step: usize, position: f64) -> (f64, f64) {
+    fn at(&self, piece: usize, step: usize, position: f64, searched: &mut Searched) -> (f64, f64) {
         let mut index = piece;
         // On either side of the point at which the curve was left and later continued.
-        let piece = loop {
+        let (piece, direction) = loop {
             let piece = &self.pieces[index];
             let direction = self.branches[piece.branch].direction;
             let beyond = |reading: &Reading| (position - reading.target) * direction;
             index = match (piece.before, piece.after) {
                 (Some(before), _) if beyond(&piece.begin) < 0.0 => before,
                 (_, Some(after)) if beyond(&self.pieces[after].begin) > 0.0 => after,
-                _ => break piece,
+                _ => break (piece, direction),
             };
         };
-        let direction = self.branches[piece.branch].direction;
-        let count = piece.last + 1 - piece.first;
-        let reading = |point: usize| {
-            if point == 0 {
+        self.on(piece, direction, step, position, searched)
+    }
+
+    /// Displacement and force at `position` \[m\] on one piece or beyond its ends, searched from the reading of `step`.
+    #[inline]
+    fn on(
+        &self,
+        piece: &Piece,
+        direction: f64,
+        step: usize,
+        position: f64,
+        searched: &mut Searched,
+    ) -> (f64, f64) {
+        let point = |index: usize| {
+            if index == 0 {
                 &piece.begin
             } else {
-                &self.readings[piece.first + point - 1]
+                &self.readings[piece.first + index - 1]
             }
         };
-        let mut from = (step + 1).saturating_sub(piece.first).min(count);
-        let here = reading(from);
-        if position == here.target {
+        let last = piece.last + 1 - piece.first;
+        let present = (step + 1).saturating_sub(piece.first).min(last);
+        let here = point(present);
+        let off = position - here.target;
+        if off == 0.0 {
             return (here.displacement, here.force);
         }
-        let onwards = (position - here.target) * direction > 0.0;
-        loop {
-            let next = if onwards && from < count {
-                from + 1
-            } else if !onwards && from > 0 {
-                from - 1
+        let onwards = off * direction > 0.0;
+        let away = |count: usize| {
+            point(if onwards {
+                present + count
             } else {
-                break;
-            };
-            let (near, far) = (reading(from), reading(next));
-            let off = |reading: &Reading| (reading.target - here.target).abs();
-            // Between the two, or at one of them. Nearby, the noise of this reading applies and not that of its neighbours: the
-            // force continues from here to the first reading that is far enough to determine a slope.
-            if off(far) >= (position - here.target).abs()
-                && off(far) >= self.least
-                && off(far) > off(near)
-            {
-                let near = if off(near) < self.least { here } else { near };
-                let share = (position - near.target) / (far.target - near.target);
-                let between = |near: f64, far: f64| near + share * (far - near);
-                return (
-                    between(near.displacement, far.displacement),
-                    between(near.force, far.force),
-                );
+                present - count
+            })
+        };
+        // Nearby, the noise of this reading applies and not that of its neighbours: the force continues from here to the first reading
+        // that is far enough to determine a slope.
+        let apart = |reading: &Reading| (reading.target - here.target).abs();
+        let reach = off.abs().max(self.least);
+        let reaches = |count: usize| apart(away(count)) >= reach;
+        let outermost = if onwards { last - present } else { present };
+        let found = if self.continuous.is_some() {
+            // Its branches are cut by velocities: near a reversal its positions may go back.
+            (1..=outermost).find(|count| reaches(*count))
+        } else if outermost == 0 || !reaches(outermost) {
+            None
+        } else {
+            // Its readings go in one direction.
+            let mut count = searched.0.clamp(1, outermost);
+            while count > 1 && reaches(count - 1) {
+                count -= 1;
             }
-            from = next;
-        }
-        let tangent = if from == count {
-            piece.end_tangent
-        } else {
-            piece.start_tangent
+            while !reaches(count) {
+                count += 1;
+            }
+            searched.0 = count;
+            Some(count)
         };
-        let end = reading(from);
-        let end = if (end.target - here.target).abs() < self.least {
-            here
-        } else {
-            end
+        let Some(count) = found else {
+            let (end, tangent) = if onwards {
+                (point(last), piece.end_tangent)
+            } else {
+                (&piece.begin, piece.start_tangent)
+            };
+            let end = if apart(end) < self.least { here } else { end };
+            let beyond = position - end.target;
+            return (end.displacement + beyond, end.force + tangent * beyond);
         };
-        let beyond = position - end.target;
-        (end.displacement + beyond, end.force + tangent * beyond)
+        let (near, far) = (away(count - 1), away(count));
+        let near = if apart(near) < self.least { here } else { near };
+        let share = (position - near.target) / (far.target - near.target);
+        let between = |near: f64, far: f64| near + share * (far - near);
+        (
+            between(near.displacement, far.displacement),
+            between(near.force, far.force),
+        )
     }
 }
+
+/// How many readings the last search went away from the present one: the next search begins there.
+#[derive(Clone, Copy, Debug, Default)]
+struct Searched(usize);
 
 /// The step of the record nearest to `step` of a path with `finer` steps for each recorded step.
 pub(crate) const fn nearest(step: usize, finer: u8) -> usize {
@@ -250,6 +276,7 @@ pub struct Retrace<'a> {
     speed: Speed,
     aside: Option<Aside>,
     departed: bool,
+    searched: Searched,
     /// The present piece, if the next step may stay on it.
     along: Option<Along>,
 }
@@ -260,20 +287,13 @@ struct Along {
     /// 1 or −1; 0 for a record without motion.
     direction: f64,
     shift: Shift,
-    /// Indices of the readings of the piece.
-    first: usize,
-    last: usize,
     /// Positions at which other pieces of its curve begin, in those of the record \[m\].
     from: f64,
     to: f64,
     /// Where its branch continues an earlier curve \[m\].
     rejoins: f64,
-    /// Tangent beyond its last reading \[N/m\].
-    end_tangent: f64,
     /// The last step of the record at which the motion may still be on it, without having missed a loop.
     matches_until: usize,
-    /// Number of readings between the present one and the one to which the last search led.
-    searched: usize,
 }
 
 /// The shift of a curve from its recorded position.
@@ -319,13 +339,14 @@ impl<'a> Retrace<'a> {
             speed: Speed::default(),
             aside: None,
             departed: false,
+            searched: Searched::default(),
             along: None,
         }
     }
 
     /// The reading at the first position.
     #[must_use]
-    pub fn start(&self) -> Reading {
+    pub fn start(&mut self) -> Reading {
         let (displacement, force) = self.read();
         Reading {
             target: self.position,
@@ -366,70 +387,25 @@ impl<'a> Retrace<'a> {
         self.read()
     }
 
-    /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it. The
-    /// numbers are those of [`RecordedPath::at`], but the search begins where the last one ended.
+    /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it.
     #[inline]
     fn read_along(&mut self, target: f64) -> Option<(f64, f64)> {
-        let least = self.path.least;
-        let along = self.along.as_mut()?;
-        let direction = along.direction;
-        let at = target - along.shift.position;
+        let along = self.along.as_ref()?;
+        let Along {
+            direction, shift, ..
+        } = *along;
+        let at = target - shift.position;
         let leaves = (target - self.position) * direction < 0.0
             || (target - along.rejoins) * direction > 0.0
             || (at - along.from) * direction < 0.0
             || (at - along.to) * direction > 0.0;
-        let readings = self.path.readings.get(along.first..=along.last)?;
         if leaves || self.step > along.matches_until {
             return None;
         }
-        // Of a motion that is late, the last one.
-        let last = readings.len().checked_sub(1)?;
-        let present = self.step.checked_sub(along.first)?.min(last);
-        let here = readings.get(present)?;
-        let off = at - here.target;
-        let onwards = off * direction > 0.0;
-        // The readings of a piece go in one direction: the first one that is far enough.
-        let reach = off.abs().max(least);
-        let apart = |reading: &Reading| (reading.target - here.target).abs();
-        let reaches = |reading: &Reading| apart(reading) >= reach;
-        let end = readings.last()?;
-        let (displacement, force) = if off == 0.0 {
-            (here.displacement, here.force)
-        } else if onwards && !reaches(end) {
-            let end = if apart(end) < least { here } else { end };
-            let beyond = at - end.target;
-            (
-                end.displacement + beyond,
-                end.force + along.end_tangent * beyond,
-            )
-        } else {
-            let away = |count: usize| {
-                let index = if onwards {
-                    present.checked_add(count)
-                } else {
-                    present.checked_sub(count)
-                };
-                index.and_then(|index| readings.get(index))
-            };
-            let mut count = along.searched.max(1);
-            while count > 1 && away(count - 1).is_none_or(reaches) {
-                count -= 1;
-            }
-            let mut far = away(count)?;
-            while !reaches(far) {
-                count += 1;
-                far = away(count)?;
-            }
-            along.searched = count;
-            let near = away(count - 1)?;
-            let near = if apart(near) < least { here } else { near };
-            let share = (at - near.target) / (far.target - near.target);
-            (
-                near.displacement + share * (far.displacement - near.displacement),
-                near.force + share * (far.force - near.force),
-            )
-        };
-        Some((displacement + (target - at), force + along.shift.force))
+        let piece = &self.path.pieces[self.piece];
+        let step = self.looked_from();
+        let (displacement, force) = self.path.on(piece, direction, step, at, &mut self.searched);
+        Some((displacement + (target - at), force + shift.force))
     }
 
     fn along(&self) -> Option<Along> {
@@ -451,20 +427,16 @@ impl<'a> Retrace<'a> {
         Some(Along {
             direction,
             shift: self.shift(),
-            first: piece.first,
-            last: piece.last,
             from: piece.before.map_or(-endless, |_| piece.begin.target),
             to: piece
                 .after
                 .map_or(endless, |after| path.pieces[after].begin.target),
             rejoins: rejoins.unwrap_or(endless),
-            end_tangent: piece.end_tangent,
             matches_until: if piece.branch + 2 < path.branches.len() {
                 path.branches[piece.branch + 1].end
             } else {
                 usize::MAX
             },
-            searched: self.along.map_or(1, |along| along.searched),
         })
     }
 
@@ -624,7 +596,9 @@ impl<'a> Retrace<'a> {
             let rise = if off.abs() <= path.least {
                 path.pieces[path.branches[branch].last_piece].end_tangent * off
             } else {
-                path.at(self.piece, self.looked_from(), at).1 - path.branches[branch].led_to
+                let from = self.looked_from();
+                let (_, force) = path.at(self.piece, from, at, &mut self.searched);
+                force - path.branches[branch].led_to
             };
             let piece = path.pieces[path.branches[next].first_piece];
             let (first, settled) = (piece.start_tangent, piece.end_tangent);
@@ -661,7 +635,7 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement and force of the specimen at its present position, in those of the record.
-    fn recorded(&self) -> (f64, f64) {
+    fn recorded(&mut self) -> (f64, f64) {
         let path = self.path;
         if let Some(aside) = self.aside {
             let back = self.position - aside.from;
@@ -674,14 +648,15 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement and force at a position \[m\] on the present curve.
-    fn at(&self, position: f64) -> (f64, f64) {
+    fn at(&mut self, position: f64) -> (f64, f64) {
         let shift = self.shift();
         let at = position - shift.position;
-        let (displacement, force) = self.path.at(self.piece, self.looked_from(), at);
+        let from = self.looked_from();
+        let (displacement, force) = self.path.at(self.piece, from, at, &mut self.searched);
         (displacement + (position - at), force + shift.force)
     }
 
-    fn read(&self) -> (f64, f64) {
+    fn read(&mut self) -> (f64, f64) {
         let (displacement, force) = self.recorded();
         let actual = self.path.continuous.as_ref().map(|continuous| {
             let step = self.looked_from();

@@ -166,20 +166,41 @@ fn a_search_from_the_last_place_finds_the_same_numbers() {
             (-2.3 * STEP, 60),
         ] {
             let (mut retrace, mut afresh) = (path.retrace(finer), path.retrace(finer));
-            let mut without_search = 0;
+            let (mut along, mut farthest) = (0, 0);
             let moved = motion(&LOOPS.map(|turn| turn + off), STEP / f64::from(finer));
             let waiting = std::iter::repeat_n(moved[0], late * usize::from(finer));
             for target in waiting.chain(moved.iter().copied()) {
-                afresh.along = None;
-                let before = retrace.along.map(|along| along.searched);
+                (afresh.along, afresh.searched) = (None, Searched::default());
+                let stays = retrace.along.is_some();
                 assert_eq!(retrace.move_to(target), afresh.move_to(target), "{off} m");
-                without_search +=
-                    u32::from(before.is_some() && retrace.read_along(target).is_some());
+                along += u32::from(stays && retrace.read_along(target).is_some());
+                farthest = farthest.max(retrace.searched.0);
             }
             assert_eq!(retrace.departed(), afresh.departed());
-            assert!(without_search > 400, "{without_search}");
+            assert!(along > 400, "{along}");
+            assert!(farthest > 2 || off.abs() < STEP, "{farthest}");
         }
     }
+}
+
+/// A continuous motion is cut where its velocity changes its sign. Its positions may go back a little before that: a position is then
+/// found between the first two readings that enclose it.
+#[test]
+fn a_continuous_motion_that_goes_back_early_is_read_between_neighbours() {
+    let readings = [(0.0, 0.0), (1.0, 10.0), (2.0, 20.0), (1.9, 40.0)];
+    let readings = readings.map(|(target, force)| Reading {
+        target,
+        displacement: target,
+        force,
+    });
+    let motion = ContinuousMotion {
+        velocities: &[0.0, 1.0, 1.0, 0.1][..],
+        time_step: 1.0,
+    };
+    let path = RecordedPath::new(readings.to_vec(), Some(motion), 10.0, DeclaredNoise::NONE);
+    let path = path.unwrap();
+    let (_, force) = path.retrace(1).pass(1.95, 1.0);
+    assert!((force - 19.5).abs() < 1e-12, "{force} N");
 }
 
 /// Steps of `step` \[m\] from reversal to reversal.
