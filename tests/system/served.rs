@@ -349,17 +349,19 @@ fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
             &[],
         )
     };
-    let mut served = hanging_up();
-    let (code, printed) = served.ended();
-    assert!(
-        code == Some(3) && printed.contains("connection lost"),
-        "{printed}"
-    );
-
-    let mut served = hanging_up();
-    let mut client = served.connect();
-    assert!(is_closed(&mut client));
-    assert_eq!(served.ended().0, Some(3));
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut served = hanging_up();
+            let mut client = served.connect();
+            assert!(is_closed(&mut client));
+            assert_eq!(served.ended().0, Some(3));
+        });
+        let (code, printed) = hanging_up().ended();
+        assert!(
+            code == Some(3) && printed.contains("connection lost"),
+            "{printed}"
+        );
+    });
 }
 
 #[test]

@@ -240,7 +240,7 @@ fn while_it_does_not_stop() {
     let moving = |plan: &str| {
         plan.replace(
             "  duration  = 24 ms\n  pause     = 0 s",
-            "  duration  = 3 ms\n  mode      = continuous(time_scale: 10000)",
+            "  duration  = 2 ms\n  mode      = continuous(time_scale: 10000)",
         )
     };
     each(moving, true, |stage| stage.after_moves(22), |_| {});
