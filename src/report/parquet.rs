@@ -232,6 +232,6 @@ pub fn row_group(
 
 /// Whether this is a thread of a pool. Waiting there for other threads, it would begin other work of its own pool on the same stack:
 /// the next report, which waits in turn, until the stack overflows.
-pub(crate) fn in_a_pool() -> bool {
+fn in_a_pool() -> bool {
     rayon::current_thread_index().is_some()
 }

@@ -44,7 +44,7 @@ const IMPURE: &[&str] = &[
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["polars"], &["report", "study/data_set"]),
-    (&["polars_io", "polars_parquet"], &["report"]),
+    (&["polars_parquet", "zmij"], &["report"]),
     (
         &[
             "plotters",

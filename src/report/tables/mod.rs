@@ -2,6 +2,7 @@
 //! Parquet, into the sink of the caller. It knows no display unit.
 
 mod column;
+mod csv;
 mod table;
 mod zero_drift;
 

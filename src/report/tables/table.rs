@@ -1,14 +1,13 @@
 //! A table that is written in chunks of rows, so that a run of a million steps needs memory for one chunk beside the record. In:
-//! a function that gives the columns of a range of steps. Out: CSV with shortest round-trip numbers, or Parquet (zstd),
-//! bit-identical with the table written as a whole.
+//! a function that gives the columns of a range of steps. Out: CSV, or Parquet (zstd), bit-identical with the table written as a whole.
 
 use std::io::{self, Write};
 use std::ops::Range;
 
-use polars::prelude::{Column, DataFrame, DataType, PlSmallStr};
-use polars_io::prelude::{CsvWriter, SerWriter as _};
+use polars::prelude::{Column, DataFrame, DataType};
 
-use crate::report::parquet::{Encoding, ParquetFile, in_a_pool};
+use super::csv;
+use crate::report::parquet::{Encoding, ParquetFile};
 
 /// Rows of a chunk; in Parquet, a row group. A page of so many doubles is compressed in the cache.
 const CHUNK: usize = 16_384;
@@ -74,18 +73,11 @@ impl<'a> Table<'a> {
 
     fn csv(&self, out: &mut dyn Write) -> io::Result<()> {
         for (index, frame) in self.chunks().enumerate() {
-            let mut frame = frame?;
-            // Polars would write the same header and touch 4 MiB of zeros for it.
+            let frame = frame?;
             if index == 0 {
-                let names = frame.get_column_names().into_iter();
-                let names: Vec<&str> = names.map(PlSmallStr::as_str).collect();
-                writeln!(out, "{}", names.join(","))?;
+                csv::header(&frame, out)?;
             }
-            let mut writer = CsvWriter::new(&mut *out).include_header(false);
-            if in_a_pool() {
-                writer = writer.n_threads(1);
-            }
-            writer.finish(&mut frame).map_err(io::Error::other)?;
+            csv::rows(&frame, out)?;
         }
         Ok(())
     }
@@ -170,10 +162,8 @@ mod tests {
     fn a_csv_table_in_chunks_is_the_table_written_as_a_whole() {
         for steps in [0, 1, 1000, CHUNK / 2, CHUNK, CHUNK + 5] {
             let mut bytes = Vec::new();
-            CsvWriter::new(&mut bytes)
-                .include_header(true)
-                .finish(&mut whole(steps))
-                .unwrap();
+            csv::header(&whole(steps), &mut bytes).unwrap();
+            csv::rows(&whole(steps), &mut bytes).unwrap();
             assert!(written(steps, Form::Csv) == bytes, "{steps}");
         }
     }
