@@ -6,6 +6,13 @@ pub const UNBALANCED: f64 = 0.1;
 /// Fraction beyond which the integration error dominates the results: no requirement is decided by them.
 pub const WORTHLESS: f64 = 0.5;
 
+/// ½ M Ẋ² \[J\], of a mass \[kg\] and its velocity \[m/s\].
+#[inline]
+#[must_use]
+pub const fn kinetic_energy(mass: f64, velocity: f64) -> f64 {
+    0.5 * mass * velocity * velocity
+}
+
 /// Energies at the end of a step, all in J. They add up:
 /// `striker + structure + restoring + damping + contact_loss + error = input`, with the input
 /// ½ Ms V0² + energy of the structure at the start + weight + gravity.

@@ -1,7 +1,7 @@
 //! An impact from start to end, on an ideal rig or along a recorded path. In: the inputs, a specimen or readings. Out: the ends of its
 //! steps, bit for bit those of [`ImpactSolver`]. Where it can, it keeps all numbers between two steps in registers.
 
-use super::energy::Energies;
+use super::energy::{Energies, kinetic_energy};
 use super::solver::impact_state;
 use super::step::{Also, BetweenSteps, end_step};
 use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
@@ -188,7 +188,7 @@ impl End {
             contacts: self.contacts,
         };
         let mut energies = Energies {
-            striker: 0.5 * input.striker_mass * motion.striker_velocity * motion.striker_velocity,
+            striker: kinetic_energy(input.striker_mass, motion.striker_velocity),
             structure: kinetic,
             restoring: work.restoring,
             damping: damped.work,

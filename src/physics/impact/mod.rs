@@ -28,7 +28,7 @@ use crate::integrator::state::State;
 use crate::integrator::substep::Striker;
 use crate::structure::Matrices;
 use crate::structure::matrix::one_degree::Body;
-use energy::Energies;
+use energy::{Energies, kinetic_energy};
 use step::{StepInputs, StrikerInput, Structure};
 use summary::StepEnd;
 
@@ -94,7 +94,7 @@ impl ImpactInput {
     /// ½ Ms V0² \[J\].
     #[must_use]
     pub fn striker_energy(&self) -> f64 {
-        0.5 * self.striker_mass * self.striker_velocity * self.striker_velocity
+        kinetic_energy(self.striker_mass, self.striker_velocity)
     }
 
     /// M, C and K of the structure.

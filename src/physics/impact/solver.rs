@@ -2,7 +2,7 @@
 //! energies. In: a structure, a striker, readings. Out: targets, and the end of each step. It commands no rig: the caller moves the
 //! specimen to the targets and returns the readings.
 
-use super::energy::Energies;
+use super::energy::{Energies, kinetic_energy};
 use super::{ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink, Until};
 use crate::contact::state::StepState;
 use crate::contact::{
@@ -176,7 +176,7 @@ impl<V: HasTangents> ImpactSolver<V> {
         };
         let law = AnyContact::new(law, input.integrator, approaching, &striker)?;
         structure.form.is_divided = matches!(law, AnyContact::Divided(_));
-        let striker_energy = 0.5 * mass * velocity * velocity;
+        let striker_energy = kinetic_energy(mass, velocity);
         let stored = reach
             .as_ref()
             .map_or(0.0, |reach| reach.stored(structure.state()));
@@ -365,7 +365,7 @@ impl<V: HasTangents> ImpactSolver<V> {
         let (balance, before) = (&after.energies, &self.state.energies);
         let fallen = advance.striker_displacement - start.striker_displacement;
         let mut energies = Energies {
-            striker: 0.5 * striker.mass * advance.striker_velocity * advance.striker_velocity,
+            striker: kinetic_energy(striker.mass, advance.striker_velocity),
             structure: balance.kinetic,
             restoring: balance.restoring,
             damping: balance.damping,

@@ -52,7 +52,7 @@ pub struct FramePath {
 #[derive(Clone, Debug)]
 enum Bends {
     /// From the ground up: shear over storey drift; of a tested element, force over deformation.
-    Storeys(Vec<RecordedPath<'static>>),
+    Storeys(Vec<RecordedPath>),
     /// Initial K \[N/m\]; lag of each floor behind its target \[s\].
     Together(SymmetricBand, Vec<f64>),
 }
@@ -285,7 +285,7 @@ struct Floors {
 pub struct FrameRetrace<'a> {
     path: &'a FramePath,
     readings: &'a Perturbation,
-    storeys: Vec<(&'a RecordedPath<'static>, Retrace<'a>)>,
+    storeys: Vec<(&'a RecordedPath, Retrace<'a>)>,
     /// Number of its own steps so far.
     own_step: usize,
     /// The nearest step of the record.

@@ -54,7 +54,7 @@ pub fn rerun(
     input: &ImpactInput,
     until: Until,
     steps: u64,
-    path: &RecordedPath<'_>,
+    path: &RecordedPath,
     readings: &Perturbation,
 ) -> Result<Outcome, ImpactError> {
     let finer = readings.finer;
@@ -417,7 +417,7 @@ mod tests {
         }
     }
 
-    fn line() -> RecordedPath<'static> {
+    fn line() -> RecordedPath {
         let reading = |position: f64| Reading {
             target: position,
             displacement: position,

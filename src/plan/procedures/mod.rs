@@ -93,7 +93,9 @@ pub mod histories {
         BroughtTogether, DampingSweepHistory, SweepStep,
     };
     pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
-    pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep, ImpactSteps};
+    pub use crate::procedures::impact::history::{
+        ImpactConstants, ImpactHistory, ImpactStep, ImpactSteps,
+    };
     pub use crate::procedures::move_to::history::MoveStep;
     pub use crate::procedures::preload::history::AxialReading;
     pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};

@@ -23,8 +23,8 @@ use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
-    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, ImpactSteps, NamedResult,
-    StillGrowing, StruckFrame,
+    FloorMotion, FloorStep, History, ImpactConstants, ImpactHistory, ImpactStep, ImpactSteps,
+    NamedResult, StillGrowing, StruckFrame,
 };
 use psd_plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use psd_rig::Reading;
@@ -90,7 +90,12 @@ pub(crate) fn strike(
         Keep::Results => 0,
         Keep::Everything | Keep::Steps => setting.steps().count,
     };
-    let mut so_far = ImpactSoFar::new(summary, kept);
+    let constants = ImpactConstants {
+        time_step: input.time_step,
+        mass: input.mass,
+        striker_mass: input.striker_mass,
+    };
+    let mut so_far = ImpactSoFar::new(summary, kept, constants);
     let ran = match (&plan.target, &setting.structure) {
         (ImpactTarget::Storey(target), StruckStructure::Storey(frame)) => {
             take_steps(plan, setting, before, &mut so_far, session, |start| {
@@ -219,12 +224,12 @@ struct ImpactSoFar {
 
 impl ImpactSoFar {
     /// Before the first step, of which `steps` are kept. Capacity is reserved for at most 100,000 of them: `duration` is often far beyond the end.
-    fn new(summary: StruckSummary, steps: u64) -> Self {
+    fn new(summary: StruckSummary, steps: u64, constants: ImpactConstants) -> Self {
         let capacity = usize::try_from(steps + 1)
             .unwrap_or(usize::MAX)
             .min(100_000);
         Self {
-            steps: ImpactSteps::with_capacity(capacity),
+            steps: ImpactSteps::with_capacity(capacity, constants),
             floors: Vec::new(),
             summary,
             tracking: TrackingSummary::default(),

@@ -22,7 +22,6 @@ use rate_correction::{ContinuousReadings, Passage, Speed};
 
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
-use std::borrow::Cow;
 
 /// One step of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,8 +71,8 @@ const SETTLED: f64 = 0.9;
 
 /// Readings along the path, in branches and curves.
 #[derive(Clone, Debug)]
-pub struct RecordedPath<'r> {
-    readings: Cow<'r, [Reading]>,
+pub struct RecordedPath {
+    readings: Vec<Reading>,
     branches: Vec<Branch>,
     pieces: Vec<Piece>,
     /// Positions closer than this determine no slope \[m\].
@@ -86,23 +85,22 @@ pub struct RecordedPath<'r> {
     continuous: Option<ContinuousReadings>,
 }
 
-impl<'r> RecordedPath<'r> {
+impl RecordedPath {
     /// `motion` is that of a continuous run; without it the specimen rested at each reading. `stiffness` \[N/m\] applies where no branch
     /// determines one. None without readings.
     #[must_use]
     pub fn new(
-        readings: impl Into<Cow<'r, [Reading]>>,
+        readings: Vec<Reading>,
         motion: Option<ContinuousMotion<&[f64]>>,
         stiffness: f64,
         noise: DeclaredNoise,
     ) -> Option<Self> {
-        let readings = readings.into();
         readings.first()?;
         let continuous =
             motion.map(|motion| ContinuousReadings::of(&readings, motion, noise.resolution));
         let readings = continuous
             .as_ref()
-            .map_or(readings, |continuous| continuous.at_rest().into());
+            .map_or(readings, ContinuousReadings::at_rest);
         let least = noise
             .resolution
             .max(NOISE_MULTIPLE * noise.force / stiffness);
@@ -257,7 +255,7 @@ pub(crate) const fn nearest(step: usize, finer: u8) -> usize {
 /// The recorded path during a re-run.
 #[derive(Clone, Debug)]
 pub struct Retrace<'a> {
-    path: &'a RecordedPath<'a>,
+    path: &'a RecordedPath,
     /// Steps of the re-run for each step of the record.
     finer: u8,
     /// Number of its own steps so far.
@@ -318,7 +316,7 @@ struct Aside {
 }
 
 impl<'a> Retrace<'a> {
-    fn new(path: &'a RecordedPath<'a>, finer: u8) -> Self {
+    fn new(path: &'a RecordedPath, finer: u8) -> Self {
         let turns = path
             .branches
             .iter()

@@ -14,7 +14,7 @@ impl Retrace<'_> {
     }
 }
 
-fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath<'static> {
+fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
     let reading = |target: &f64| Reading {
         target: *target,
         displacement: target + 1e-4,
@@ -217,7 +217,7 @@ fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     positions
 }
 
-fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath<'static> {
+fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
     let reading = |target: &f64| Reading {
         target: *target,
         displacement: *target,
@@ -233,7 +233,7 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath<'st
 }
 
 /// The largest force error of the re-run.
-fn worst(path: &RecordedPath<'_>, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
+fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
     let mut retrace = path.retrace(1);
     model.move_to(targets[0]);
     targets[1..]

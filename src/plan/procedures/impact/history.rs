@@ -1,7 +1,7 @@
 //! The history of an impact, on one degree of freedom or on a floor of a frame: one row per step.
 
 use crate::record::{StepState, StruckFrame};
-use psd_physics::impact::energy::Energies;
+use psd_physics::impact::energy::{Energies, kinetic_energy};
 use psd_physics::impact::summary::ImpactEnding;
 use psd_physics::reintegration::recorded_path::Reading;
 use psd_physics::tracking::monitor::Tracking;
@@ -52,70 +52,63 @@ pub struct ImpactHistory {
     pub critical_time_step: f64,
 }
 
-/// The steps of an impact, number by number. A number that never changes takes no memory: a run of a million steps has many.
+/// The steps of an impact, number by number. A time or a kinetic energy is expected to follow from [`ImpactConstants`], a computed or
+/// measured displacement from the command, and any other number to be the same as at the first step. While a number is as expected in
+/// every step, it takes no memory: a run of a million steps has many such numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactSteps {
+    constants: ImpactConstants,
     /// Number of the first one; the next ones follow it.
     first: u64,
     states: Vec<StepState>,
-    /// Commands, measured displacements and restoring forces.
-    readings: Vec<Reading>,
-    /// Computed displacements; None while each is the command.
-    computed: Option<Vec<f64>>,
-    /// Empty without steps.
-    numbers: Vec<Numbers>,
+    /// None without steps.
+    numbers: Option<Box<[Numbers; NUMBERS]>>,
+}
+
+/// Constants of an impact, from which times and kinetic energies follow with the number of the step and the velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImpactConstants {
+    /// \[s\]
+    pub time_step: f64,
+    /// \[kg\]
+    pub mass: f64,
+    /// \[kg\]
+    pub striker_mass: f64,
 }
 
 /// One number of every step.
-#[derive(Clone, Debug, PartialEq)]
-enum Numbers {
-    Constant(f64),
-    Each(Vec<f64>),
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Numbers {
+    first: f64,
+    /// None while each is as expected.
+    each: Option<Vec<f64>>,
 }
 
-/// How many numbers of a step are in [`ImpactSteps::numbers`].
-const NUMBERS: usize = 22;
+/// How many numbers a step has.
+const NUMBERS: usize = 26;
 
-impl Default for Numbers {
-    fn default() -> Self {
-        Self::Constant(0.0)
+/// The numbers without steps.
+static NO_NUMBERS: [Numbers; NUMBERS] = [const {
+    Numbers {
+        first: f64::NAN,
+        each: None,
     }
-}
+}; NUMBERS];
 
-impl Numbers {
-    /// Adds the number of the step at `index`.
-    #[inline]
-    fn push(&mut self, index: usize, number: f64, capacity: usize) {
-        match self {
-            Self::Each(numbers) => numbers.push(number),
-            Self::Constant(constant) if constant.to_bits() == number.to_bits() => {}
-            Self::Constant(constant) if index == 0 => *constant = number,
-            Self::Constant(constant) => {
-                let mut numbers = Vec::with_capacity(capacity);
-                numbers.resize(index, *constant);
-                numbers.push(number);
-                *self = Self::Each(numbers);
-            }
-        }
-    }
-
-    /// That of the step at `index`, which exists.
-    #[inline]
-    fn at(&self, index: usize) -> f64 {
-        match self {
-            Self::Constant(constant) => *constant,
-            Self::Each(numbers) => numbers.get(index).copied().unwrap_or(f64::NAN),
-        }
-    }
-}
+/// The numbers from which others follow, by their index in [`ImpactStep::numbers`].
+const COMMAND: usize = 2;
+/// See [`COMMAND`].
+const VELOCITY: usize = 5;
+/// See [`COMMAND`].
+const STRIKER_VELOCITY: usize = 10;
 
 impl ImpactSteps {
     /// No steps, with space for so many.
     #[must_use]
-    pub fn with_capacity(capacity: usize) -> Self {
+    pub fn with_capacity(capacity: usize, constants: ImpactConstants) -> Self {
         Self {
+            constants,
             states: Vec::with_capacity(capacity),
-            readings: Vec::with_capacity(capacity),
             ..Self::default()
         }
     }
@@ -123,29 +116,60 @@ impl ImpactSteps {
     /// Adds the next step.
     #[inline]
     pub fn push(&mut self, step: &ImpactStep) {
-        let index = self.states.len();
-        if index == 0 {
+        let numbers = step.numbers();
+        if self.is_empty() {
             self.first = step.step;
-            self.numbers.resize_with(NUMBERS, Numbers::default);
+            let kept = self.numbers.insert(Box::default());
+            for (kept, number) in kept.iter_mut().zip(numbers) {
+                kept.first = number;
+            }
         }
-        let capacity = self.states.capacity();
-        if self.computed.is_none() && step.computed.to_bits() != step.command.to_bits() {
-            let mut computed = Vec::with_capacity(capacity);
-            computed.extend(self.readings.iter().map(|reading| reading.target));
-            self.computed = Some(computed);
+        let firsts = self.numbers();
+        let others_follow = [COMMAND, VELOCITY, STRIKER_VELOCITY];
+        let mut expected = self
+            .step(self.len(), step.state, |index, expected| {
+                if others_follow.contains(&index) {
+                    numbers[index]
+                } else {
+                    expected
+                }
+            })
+            .numbers();
+        for index in others_follow {
+            expected[index] = firsts[index].first;
         }
-        if let Some(computed) = &mut self.computed {
-            computed.push(step.computed);
+        let mut unexpected = 0_u32;
+        let kept = self.numbers.iter_mut().flat_map(|kept| kept.iter_mut());
+        for (index, kept) in kept.enumerate() {
+            if let Some(each) = &mut kept.each {
+                each.push(numbers[index]);
+            } else {
+                let same = numbers[index].to_bits() == expected[index].to_bits();
+                unexpected |= u32::from(!same) << index;
+            }
+        }
+        if unexpected != 0 {
+            self.keep_from_now_on(unexpected, &numbers);
         }
         self.states.push(step.state);
-        self.readings.push(Reading {
-            target: step.command,
-            displacement: step.displacement,
-            force: step.restoring_force,
-        });
-        for (numbers, number) in self.numbers.iter_mut().zip(step.numbers()) {
-            numbers.push(index, number, capacity);
+    }
+
+    /// Keeps the numbers with these indices, one bit each: those of the steps so far, and of the next one.
+    #[cold]
+    fn keep_from_now_on(&mut self, indices: u32, next: &[f64; NUMBERS]) {
+        for index in (0..NUMBERS).filter(|index| indices >> index & 1 == 1) {
+            let mut each = Vec::with_capacity(self.states.capacity());
+            each.extend(self.iter().map(|step| step.numbers()[index]));
+            each.push(next[index]);
+            if let Some(numbers) = &mut self.numbers {
+                numbers[index].each = Some(each);
+            }
         }
+    }
+
+    #[inline]
+    fn numbers(&self) -> &[Numbers; NUMBERS] {
+        self.numbers.as_deref().unwrap_or(&NO_NUMBERS)
     }
 
     #[must_use]
@@ -169,47 +193,70 @@ impl ImpactSteps {
     #[expect(clippy::inline_always, reason = "a call would read all numbers")]
     #[inline(always)]
     fn at(&self, index: usize) -> ImpactStep {
-        let (state, reading) = (self.states[index], self.readings[index]);
-        let computed = match &self.computed {
-            None => reading.target,
-            Some(computed) => computed.get(index).copied().unwrap_or(f64::NAN),
-        };
-        let number = |column: usize| {
-            let numbers = self.numbers.get(column);
-            numbers.map_or(f64::NAN, |numbers| numbers.at(index))
-        };
+        let numbers = self.numbers();
+        self.step(index, self.states[index], |number, expected| {
+            let each = numbers[number].each.as_ref();
+            each.map_or(expected, |each| {
+                each.get(index).copied().unwrap_or(f64::NAN)
+            })
+        })
+    }
+
+    /// The step at `index`, of which `number` gives each number, by its index, from the expected one.
+    #[expect(clippy::cast_precision_loss, reason = "far fewer steps than 2^53")]
+    #[expect(clippy::inline_always, reason = "as `ImpactSteps::at`")]
+    #[inline(always)]
+    fn step(
+        &self,
+        index: usize,
+        state: StepState,
+        number: impl Fn(usize, f64) -> f64,
+    ) -> ImpactStep {
+        let firsts = self.numbers();
+        let as_first = |index: usize| number(index, firsts[index].first);
+        let ImpactConstants {
+            time_step,
+            mass,
+            striker_mass,
+        } = self.constants;
+        let step = self.first + index as u64;
+        // A signed number is converted in one instruction.
+        let time = step.cast_signed() as f64 * time_step;
+        let command = as_first(COMMAND);
+        let velocity = as_first(VELOCITY);
+        let striker_velocity = as_first(STRIKER_VELOCITY);
         ImpactStep {
-            step: self.first + index as u64,
-            time: number(0),
-            wall_time: number(1),
+            step,
+            time: number(0, time),
+            wall_time: as_first(1),
             state,
-            command: reading.target,
-            computed,
-            displacement: reading.displacement,
-            velocity: number(2),
-            acceleration: number(3),
-            restoring_force: reading.force,
-            contact_force: number(4),
-            striker_displacement: number(5),
-            striker_velocity: number(6),
-            tangent_stiffness: number(7),
-            indentation: number(8),
+            command,
+            computed: number(3, command),
+            displacement: number(4, command),
+            velocity,
+            acceleration: as_first(6),
+            restoring_force: as_first(7),
+            contact_force: as_first(8),
+            striker_displacement: as_first(9),
+            striker_velocity,
+            tangent_stiffness: as_first(11),
+            indentation: as_first(12),
             energies: Energies {
-                striker: number(9),
-                structure: number(10),
-                restoring: number(11),
-                damping: number(12),
-                contact_loss: number(13),
-                indentation: number(14),
-                weight: number(15),
-                gravity: number(16),
-                error: number(17),
+                striker: number(13, kinetic_energy(striker_mass, striker_velocity)),
+                structure: number(14, kinetic_energy(mass, velocity)),
+                restoring: as_first(15),
+                damping: as_first(16),
+                contact_loss: as_first(17),
+                indentation: as_first(18),
+                weight: as_first(19),
+                gravity: as_first(20),
+                error: as_first(21),
             },
             tracking: Tracking {
-                energy_error: number(18),
-                indicator: number(19),
-                nrms_error: number(20),
-                peak_error: number(21),
+                energy_error: as_first(22),
+                indicator: as_first(23),
+                nrms_error: as_first(24),
+                peak_error: as_first(25),
             },
         }
     }
@@ -248,8 +295,13 @@ impl ImpactSteps {
 
     /// What was commanded and read, step by step.
     #[must_use]
-    pub fn readings(&self) -> &[Reading] {
-        &self.readings
+    pub fn readings(&self) -> Vec<Reading> {
+        let reading = |step: ImpactStep| Reading {
+            target: step.command,
+            displacement: step.displacement,
+            force: step.restoring_force,
+        };
+        self.iter().map(reading).collect()
     }
 }
 
@@ -314,8 +366,12 @@ impl ImpactStep {
         [
             self.time,
             self.wall_time,
+            self.command,
+            self.computed,
+            self.displacement,
             self.velocity,
             self.acceleration,
+            self.restoring_force,
             self.contact_force,
             self.striker_displacement,
             self.striker_velocity,
@@ -339,68 +395,140 @@ impl ImpactStep {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "26 numbers")]
 mod tests {
     use super::*;
 
-    /// All numbers differ from step to step, or change late, or never: each step comes back as it was, also a negative zero.
+    /// The step with these numbers, in the order of [`ImpactStep::numbers`].
+    fn step_of(step: u64, numbers: [f64; NUMBERS]) -> ImpactStep {
+        let numbers = numbers.map(|first| Numbers {
+            first,
+            each: Some(vec![first]),
+        });
+        let steps = ImpactSteps {
+            first: step,
+            states: vec![StepState::Contact],
+            numbers: Some(Box::new(numbers)),
+            ..ImpactSteps::default()
+        };
+        steps.at(0)
+    }
+
+    /// The indices of the numbers that take memory.
+    fn kept(steps: &ImpactSteps) -> Vec<usize> {
+        let numbers = steps.numbers().iter().enumerate();
+        numbers
+            .filter(|(_, numbers)| numbers.each.is_some())
+            .map(|(index, _)| index)
+            .collect()
+    }
+
+    fn bits(step: ImpactStep) -> [u64; NUMBERS] {
+        step.numbers().map(f64::to_bits)
+    }
+
+    /// All numbers differ from step to step, but the contact force, which never changes, and the indentation, which changes its sign once.
     #[test]
     fn steps_come_back_to_the_bit_and_constant_numbers_take_no_memory() {
-        let step = |index: u32| {
-            let number = f64::from(index).sin();
-            let late = if index < 7 { 0.0 } else { -0.0 };
-            ImpactStep {
-                step: 3 + u64::from(index),
-                time: 1e-3 * f64::from(index),
-                wall_time: 0.5 + f64::from(index),
-                state: if index == 4 {
-                    StepState::Contact
-                } else {
-                    StepState::Free
-                },
-                command: number,
-                computed: if index < 5 { number } else { number + 1e-9 },
-                displacement: 1.01 * number,
-                velocity: -number,
-                acceleration: number * number,
-                restoring_force: 100.0 * number,
-                contact_force: late,
-                striker_displacement: number - 1.0,
-                striker_velocity: number + 1.0,
-                tangent_stiffness: 327.65,
-                indentation: 0.0,
-                energies: Energies {
-                    striker: number,
-                    error: late,
-                    ..Energies::default()
-                },
-                tracking: Tracking {
-                    indicator: number,
-                    ..Tracking::default()
-                },
-            }
+        let step = |index: u32| ImpactStep {
+            contact_force: 0.0,
+            indentation: if index < 7 { 0.0 } else { -0.0 },
+            state: if index == 4 {
+                StepState::Free
+            } else {
+                StepState::Contact
+            },
+            ..step_of(
+                3 + u64::from(index),
+                std::array::from_fn(|number| (26.0 * f64::from(index) + number as f64).sin()),
+            )
         };
         let all: ImpactSteps = (0..10).map(step).collect();
         assert_eq!((all.len(), all.is_empty()), (10, false));
-        for (index, kept) in (0..).zip(all.iter()) {
-            let wanted = step(index);
-            assert_eq!(kept, wanted);
-            assert_eq!(
-                kept.numbers().map(f64::to_bits),
-                wanted.numbers().map(f64::to_bits)
-            );
+        for (index, found) in (0..).zip(all.iter()) {
+            assert_eq!(found, step(index));
+            assert_eq!(bits(found), bits(step(index)));
         }
         assert_eq!((all.first(), all.last()), (Some(step(0)), Some(step(9))));
         assert_eq!(all.get(10), None);
         assert!(all.range(2..4).eq([step(2), step(3)]));
         assert!(all.pairs().nth(8) == Some((step(8), step(9))));
-        let constant = |numbers: &&Numbers| matches!(numbers, Numbers::Constant(_));
-        assert_eq!(all.numbers.iter().filter(constant).count(), 12);
-        let before: ImpactSteps = (0..5).map(step).collect();
-        assert!(before.computed.is_none() && all.computed.is_some());
+        let all_but = |constant: &[usize]| -> Vec<usize> {
+            (0..NUMBERS)
+                .filter(|number| !constant.contains(number))
+                .collect()
+        };
+        assert_eq!(kept(&all), all_but(&[8]));
+        let before: ImpactSteps = (0..7).map(step).collect();
+        assert_eq!(kept(&before), all_but(&[8, 12]));
         let none = ImpactSteps::default();
         assert_eq!(
             (none.first(), none.last(), none.pairs().count()),
             (None, None, 0)
         );
+    }
+
+    /// Each number comes back in its own field: a step of the numbers 0 to 25, by name.
+    #[test]
+    fn each_number_has_its_field() {
+        let numbers = std::array::from_fn(|number| number as f64);
+        let step = step_of(7, numbers);
+        assert_eq!(step.numbers(), numbers);
+        let by_name = [
+            step.time,
+            step.command,
+            step.displacement,
+            step.velocity,
+            step.restoring_force,
+            step.contact_force,
+            step.striker_velocity,
+            step.energies.striker,
+            step.energies.structure,
+            step.energies.error,
+            step.tracking.peak_error,
+        ];
+        assert_eq!(
+            by_name,
+            [0.0, 2.0, 4.0, 5.0, 7.0, 8.0, 10.0, 13.0, 14.0, 21.0, 25.0]
+        );
+    }
+
+    /// Six steps on an ideal rig, on which times, kinetic energies, computed and measured displacements follow from other numbers, and
+    /// three on which the displacement and the energy of the structure do not.
+    #[test]
+    fn numbers_that_follow_from_others_are_kept_once_they_do_not() {
+        let constants = ImpactConstants {
+            time_step: 1e-6,
+            mass: 3.7,
+            striker_mass: 12.9,
+        };
+        let step = |index: u32| {
+            let (number, off) = (f64::from(index).sin(), if index < 6 { 0.0 } else { 1e-6 });
+            let mut step = step_of(40 + u64::from(index), [0.5; NUMBERS]);
+            step.time = f64::from(40 + index) * constants.time_step;
+            (step.command, step.computed) = (number, number);
+            step.displacement = number + off;
+            step.velocity = 1.3 * number;
+            step.restoring_force = 100.0 * number;
+            step.striker_velocity = number - 0.2;
+            step.energies.striker = kinetic_energy(constants.striker_mass, step.striker_velocity);
+            step.energies.structure = kinetic_energy(constants.mass, step.velocity) + off;
+            step
+        };
+        let mut all = ImpactSteps::with_capacity(9, constants);
+        (0..6).for_each(|index| all.push(&step(index)));
+        assert_eq!(kept(&all), [COMMAND, VELOCITY, 7, STRIKER_VELOCITY]);
+        (6..9).for_each(|index| all.push(&step(index)));
+        assert_eq!(kept(&all), [COMMAND, 4, VELOCITY, 7, STRIKER_VELOCITY, 14]);
+        for (index, (found, reading)) in (0..).zip(all.iter().zip(all.readings())) {
+            let step = step(index);
+            assert_eq!(bits(found), bits(step));
+            let read = Reading {
+                target: step.command,
+                displacement: step.displacement,
+                force: step.restoring_force,
+            };
+            assert_eq!(reading, read);
+        }
     }
 }

@@ -61,11 +61,12 @@ impl ImpactUncertainty<'_> {
     pub(crate) fn propagate(
         &self,
         setting: &Setting,
-        readings: &[Reading],
+        readings: Vec<Reading>,
         recorded: &ImpactSummary,
         results: &mut [NamedResult],
         progress: Progress<'_, Stop>,
     ) -> Result<(), Unknown<Stop>> {
+        let steps = readings.len();
         let path = self
             .path(setting, readings)
             .ok_or_else(|| "nothing was recorded".to_owned())?;
@@ -89,7 +90,7 @@ impl ImpactUncertainty<'_> {
             1,
             self.sources()?,
             RecordedValues {
-                steps: readings.len(),
+                steps,
                 reported,
                 nominal: Some(RecordedImpact::evaluation(&unperturbed, setting)),
             },
@@ -100,10 +101,11 @@ impl ImpactUncertainty<'_> {
     }
 
     /// The recorded path; None without readings.
-    fn path<'r>(&self, setting: &Setting, readings: &'r [Reading]) -> Option<RecordedPath<'r>> {
+    fn path(&self, setting: &Setting, readings: Vec<Reading>) -> Option<RecordedPath> {
         let input = &setting.input;
-        let velocities = (self.plan.stepping.mode != Mode::RampAndHold)
-            .then(|| predicted_velocities(input, self.plan.until, setting.steps().count, readings));
+        let velocities = (self.plan.stepping.mode != Mode::RampAndHold).then(|| {
+            predicted_velocities(input, self.plan.until, setting.steps().count, &readings)
+        });
         let motion = velocities.as_deref().map(|velocities| ContinuousMotion {
             velocities,
             time_step: input.time_step,
@@ -239,7 +241,7 @@ impl<'a> UncertaintyInputs<'a> {
 struct RecordedImpact<'a, 'run> {
     uncertainty: &'a ImpactUncertainty<'run>,
     setting: &'a Setting,
-    path: RecordedPath<'a>,
+    path: RecordedPath,
     /// Number of values of an evaluation.
     length: usize,
 }

@@ -6,7 +6,7 @@ use crate::tests::testing::{elastic_plan, every, number, result_of, run_unwatche
 use psd_physics::contact::state::StepState;
 use psd_plan::formula::Formula;
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{EventKind, History, ImpactStep, Outcome, Record};
+use psd_plan::record::{EventKind, History, ImpactStep, ImpactSteps, Outcome, Record};
 use psd_plan::{
     Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until,
     VirtualLink,
@@ -68,6 +68,19 @@ fn example_1_comes_out_as_printed() {
         .map(|pair| (pair[1].command - pair[0].command).abs())
         .sum();
     assert!((steps.last().unwrap().wall_time - travel / 1e-3).abs() < 1e-9);
+}
+
+/// Beside the same steps without the constants of the impact, three numbers fewer are in memory: time and both kinetic energies.
+#[test]
+fn on_an_ideal_rig_times_and_kinetic_energies_are_not_kept() {
+    let record = run_unwatched(&plan(impact()));
+    let History::Impact(history) = &record.procedures[0].history else {
+        panic!("an impact")
+    };
+    let kept = |steps: &ImpactSteps| format!("{steps:?}").matches("each: Some").count();
+    let alone: ImpactSteps = history.steps.iter().collect();
+    assert!(alone.iter().eq(history.steps.iter()));
+    assert_eq!(kept(&alone) - kept(&history.steps), 3);
 }
 
 #[test]
