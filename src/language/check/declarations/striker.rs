@@ -3,6 +3,7 @@
 use crate::check::checker::Checker;
 use crate::check::violations::{MissingField, TooUncertain};
 use crate::codes::{E208, E407};
+use psd_physics::impact::energy::kinetic_energy;
 use psd_plan::Striker;
 use psd_plan::formula::{Formula, Operator, Stated};
 use psd_plan::schema::striker::{
@@ -102,7 +103,7 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     let mass_uncertainty = uncertainty(checker, block, MASS_UNCERTAINTY.name, mass);
     let velocity_uncertainty = uncertainty(checker, block, VELOCITY_UNCERTAINTY.name, velocity);
     if let (Some(mass), Some(velocity)) = (mass, velocity)
-        && !(0.5 * mass * velocity * velocity).is_finite()
+        && !kinetic_energy(mass, velocity).is_finite()
     {
         return checker.fail(EnergyNotFinite {
             span: forms.first().map_or(head, |(_, span)| *span),

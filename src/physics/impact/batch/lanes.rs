@@ -13,7 +13,7 @@ use super::rows::{LANES, LanePart, LaneRow};
 use super::{Batched, Impact, LaneSpecimen};
 use crate::contact::ImpulseContact;
 use crate::impact::ImpactInput;
-use crate::impact::energy::Energies;
+use crate::impact::energy::{Energies, kinetic_energy};
 use crate::impact::step::{
     Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step,
 };
@@ -340,7 +340,7 @@ impl Lanes {
         results.instant = time(results.instant);
         events.stop = events.stop.map(time);
         let energies = Energies {
-            striker: 0.5 * input.striker_mass * motion.striker_velocity * motion.striker_velocity,
+            striker: kinetic_energy(input.striker_mass, motion.striker_velocity),
             structure: 0.5 * (input.mass * motion.velocity * motion.velocity),
             restoring: work.restoring,
             damping: damped.work,

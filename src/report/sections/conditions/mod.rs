@@ -11,6 +11,7 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, stated};
 use crate::report::wording::{common, conditions as wording, specimen as specimen_text};
+use psd_physics::impact::energy::kinetic_energy;
 use psd_plan::record::equipment::HeldLimit;
 use psd_plan::schema::limits;
 use psd_plan::schema::plan_block as schema;
@@ -183,7 +184,7 @@ fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
 }
 
 fn striker_table(striker: &Striker) -> Block {
-    let energy = 0.5 * striker.mass * striker.velocity * striker.velocity;
+    let energy = kinetic_energy(striker.mass, striker.velocity);
     let mut rows = vec![
         (
             wording::MASS,
