@@ -80,10 +80,10 @@ impl BatchedImpact {
         let point = plan.point().filter(|_| whole.procedures.len() == 1)?;
         let specimen = &whole.specimens[plan.specimen];
         let behaviour = specimen.behaviour.as_ref()?;
-        let undamped = specimen.damping == 0.0 && specimen.coulomb == 0.0;
         let relaxes = !RelaxationState::new(behaviour).is_none();
-        let stops = plan.stepping.mode == Mode::RampAndHold;
-        if !(is_ideal(whole) && undamped && stops) || relaxes {
+        // At rest a damper has no force, and friction stays.
+        let stops = plan.stepping.mode == Mode::RampAndHold && specimen.coulomb == 0.0;
+        if !(is_ideal(whole) && stops) || relaxes {
             return None;
         }
         let striker = &whole.strikers[plan.striker];

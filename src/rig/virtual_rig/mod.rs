@@ -137,7 +137,7 @@ impl VirtualRig {
             rig.is_ideal = rig.wait.is_some()
                 && sign == 1.0
                 && errors.iter().all(|error| *error == 0.0)
-                && !rig.springs.have_feedback();
+                && !rig.springs.have_feedback_at_rest();
         }
         rig
     }

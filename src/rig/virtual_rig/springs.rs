@@ -172,6 +172,16 @@ impl Springs {
         }
     }
 
+    /// The same with the axes at rest, where friction stays and a damper has no force.
+    pub(super) fn have_feedback_at_rest(&self) -> bool {
+        match self {
+            Self::Storeys(storeys) => storeys
+                .iter()
+                .any(|storey| storey.damper.coulomb != 0.0 || !storey.relaxing.is_none()),
+            Self::Matrix { .. } => false,
+        }
+    }
+
     /// The axial load on a storey has this P-Δ per drift \[N/m\] from here on.
     pub(super) fn lean(&mut self, storey: usize, per_drift: f64) {
         if let Self::Storeys(storeys) = self

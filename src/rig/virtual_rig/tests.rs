@@ -224,29 +224,51 @@ fn refuses_what_it_cannot_do() {
     assert!(rig.execute().is_err(), "nothing was proposed");
 }
 
-/// In one call or in four, an ideal rig is at the same place at the same time with the same force; an error, a lag or a damper makes it one
-/// that is not ideal.
+/// In one call or in four, an ideal rig is at the same place at the same time with the same force. A damper has no force at rest; the next
+/// stroke measures it.
 #[test]
 fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
-    let ideal = VirtualLink::default();
-    let (mut once, mut stepwise) = (rig(ideal), rig(ideal));
-    let mut reading = once.read().unwrap();
-    for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
-        assert!(once.is_ideal());
-        let whole = once.at_once().expect("an ideal rig");
-        whole
-            .step(&[target], Some(0.01), 0.5, &mut reading)
+    for damping in [0.0, 50.0] {
+        let ideal = || {
+            VirtualRig::new(
+                VirtualLink::default(),
+                AT_ONCE,
+                Some(&specimen(damping, 0.0)),
+                1.0,
+            )
+        };
+        let (mut once, mut stepwise) = (ideal(), ideal());
+        let mut reading = once.read().unwrap();
+        for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
+            assert!(once.is_ideal());
+            let whole = once.at_once().expect("an ideal rig");
+            whole
+                .step(&[target], Some(0.01), 0.5, &mut reading)
+                .unwrap();
+            stepwise.propose(&[target], Some(0.01)).unwrap();
+            stepwise.execute().unwrap();
+            stepwise.pause(0.5).unwrap();
+            assert_eq!(reading, stepwise.read().unwrap());
+            assert_eq!(
+                (reading.displacement[0], reading.force[0]),
+                (target, 1000.0 * target)
+            );
+            assert_eq!(once.read_moved().unwrap(), stepwise.read_moved().unwrap());
+        }
+        for rig in [&mut once, &mut stepwise] {
+            rig.traverse(&[1e-3], 0.01, 1, &mut |reading| {
+                assert!((reading.force[0] - (1.0 + 0.01 * damping)).abs() < 1e-12);
+                Ok(())
+            })
             .unwrap();
-        stepwise.propose(&[target], Some(0.01)).unwrap();
-        stepwise.execute().unwrap();
-        stepwise.pause(0.5).unwrap();
-        assert_eq!(reading, stepwise.read().unwrap());
-        assert_eq!(
-            (reading.displacement[0], reading.force[0]),
-            (target, 1000.0 * target)
-        );
-        assert_eq!(once.read_moved().unwrap(), stepwise.read_moved().unwrap());
+        }
     }
+}
+
+/// An error, a lag, friction or a turned polarity makes a rig one that is not ideal.
+#[test]
+fn a_rig_with_errors_is_not_ideal() {
+    let ideal = VirtualLink::default();
     let links = [
         VirtualLink {
             noise: 1.0,
@@ -273,11 +295,7 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
     for link in links {
         assert!(!rig(link).is_ideal(), "{link:?}");
     }
-    let others = [
-        (specimen(5.0, 0.0), 1.0),
-        (specimen(0.0, 5.0), 1.0),
-        (specimen(0.0, 0.0), -1.0),
-    ];
+    let others = [(specimen(0.0, 5.0), 1.0), (specimen(0.0, 0.0), -1.0)];
     for (specimen, sign) in others {
         let mut rig = VirtualRig::new(ideal, AT_ONCE, Some(&specimen), sign);
         assert!(!rig.is_ideal());
