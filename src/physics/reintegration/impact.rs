@@ -71,12 +71,17 @@ pub fn rerun(
         force,
     };
     let mut reading = 0;
+    // Each step waits for its reading.
+    let unchanged = readings.leaves_unchanged(0);
     run(
         input,
         until,
         steps * u64::from(finer),
         start,
         |target, velocity| {
+            if unchanged {
+                return (retrace.pass(target, velocity), retrace.departed());
+            }
             reading += 1;
             let read = retrace.pass(
                 readings.recorded_position(0, target),

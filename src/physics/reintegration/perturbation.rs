@@ -16,6 +16,16 @@ pub struct Instruments {
 }
 
 impl Instruments {
+    /// Those that change no reading.
+    const UNCHANGED: Self = Self {
+        force_scale: 1.0,
+        displacement_scale: 1.0,
+        zero_offset: 0.0,
+        force_below: BelowRange::NONE,
+        displacement_below: BelowRange::NONE,
+        errors: ReadingErrors::NONE,
+    };
+
     /// The reading of a displacement of the record \[m\].
     #[must_use]
     pub fn displaced(&self, position: f64) -> f64 {
@@ -42,6 +52,12 @@ pub struct BelowRange {
 }
 
 impl BelowRange {
+    const NONE: Self = Self {
+        end: 0.0,
+        zero: 0.0,
+        error: 0.0,
+    };
+
     /// The error of a reading just above zero \[N\] or \[m\].
     #[must_use]
     pub const fn of_end(self) -> f64 {
@@ -80,6 +96,12 @@ pub struct ReadingErrors {
 }
 
 impl ReadingErrors {
+    const NONE: Self = Self {
+        noise: 0.0,
+        resolution: 0.0,
+        force_resolution: 0.0,
+    };
+
     /// Whether there are any.
     #[must_use]
     pub fn any(&self) -> bool {
@@ -108,19 +130,17 @@ impl Perturbation {
     /// The unchanged readings.
     #[must_use]
     pub fn none(axes: usize) -> Self {
-        let instruments = Instruments {
-            force_scale: 1.0,
-            displacement_scale: 1.0,
-            zero_offset: 0.0,
-            force_below: BelowRange::default(),
-            displacement_below: BelowRange::default(),
-            errors: ReadingErrors::default(),
-        };
         Self {
-            axes: vec![instruments; axes],
+            axes: vec![Instruments::UNCHANGED; axes],
             trial: None,
             finer: 1,
         }
+    }
+
+    /// Whether the readings of an axis are those of the record.
+    #[must_use]
+    pub fn leaves_unchanged(&self, axis: usize) -> bool {
+        self.trial.is_none() && self.axes[axis] == Instruments::UNCHANGED
     }
 
     /// A velocity or a small motion of the re-run, in metres of the record.

@@ -166,6 +166,54 @@ impl RecordedPath {
         self.on(piece, direction, step, position, searched)
     }
 
+    /// Reading number `index` of a piece; 0 is its begin.
+    #[inline]
+    fn point<'a>(&'a self, piece: &'a Piece, index: usize) -> &'a Reading {
+        if index == 0 {
+            &piece.begin
+        } else {
+            &self.readings[piece.first + index - 1]
+        }
+    }
+
+    /// The stretch of a piece at `position` \[m\]. None where the noise of readings counts: their neighbours determine no slope.
+    fn stretch_at(&self, piece: &Piece, direction: f64, position: f64) -> Option<Stretch> {
+        if self.least > 0.0 || self.continuous.is_some() || direction == 0.0 {
+            return None;
+        }
+        // Its readings go in one direction.
+        let passed = |reading: &Reading| (reading.target - position) * direction <= 0.0;
+        let ends = if passed(&piece.begin) {
+            1 + self.readings[piece.first..=piece.last].partition_point(passed)
+        } else {
+            0
+        };
+        Some(self.stretch(piece, direction, ends))
+    }
+
+    /// The stretch of a piece that ends at reading number `ends`.
+    fn stretch(&self, piece: &Piece, direction: f64, ends: usize) -> Stretch {
+        let last = piece.last + 1 - piece.first;
+        let end = (ends <= last).then(|| *self.point(piece, ends));
+        let begin = ends.checked_sub(1).map(|begins| *self.point(piece, begins));
+        let [displacement_slope, force_slope] = match (begin, end) {
+            (Some(begin), Some(end)) => [
+                end.displacement - begin.displacement,
+                end.force - begin.force,
+            ]
+            .map(|rise| rise / (end.target - begin.target)),
+            (None, _) => [1.0, piece.start_tangent],
+            (_, None) => [1.0, piece.end_tangent],
+        };
+        Stretch {
+            ends,
+            end: end.map_or(direction * f64::INFINITY, |end| end.target),
+            on_it: begin.unwrap_or(piece.begin),
+            displacement_slope,
+            force_slope,
+        }
+    }
+
     /// Displacement and force at `position` \[m\] on one piece or beyond its ends, searched from the reading of `step`.
     #[inline]
     fn on(
@@ -176,13 +224,7 @@ impl RecordedPath {
         position: f64,
         searched: &mut Searched,
     ) -> (f64, f64) {
-        let point = |index: usize| {
-            if index == 0 {
-                &piece.begin
-            } else {
-                &self.readings[piece.first + index - 1]
-            }
-        };
+        let point = |index: usize| self.point(piece, index);
         let last = piece.last + 1 - piece.first;
         let present = (step + 1).saturating_sub(piece.first).min(last);
         let here = point(present);
@@ -242,6 +284,21 @@ impl RecordedPath {
     }
 }
 
+/// A piece between two neighbouring readings without noise, or beyond its ends: displacement and force are linear there.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    /// Number of the reading at its end, the last plus one beyond the end of the piece.
+    ends: usize,
+    /// Its position \[m\].
+    end: f64,
+    /// The reading at its begin; beyond the begin of the piece, the one there.
+    on_it: Reading,
+    /// Metres measured per metre of target.
+    displacement_slope: f64,
+    /// \[N/m\]
+    force_slope: f64,
+}
+
 /// How many readings the last search went away from the present one: the next search begins there.
 #[derive(Clone, Copy, Debug, Default)]
 struct Searched(usize);
@@ -292,6 +349,8 @@ struct Along {
     rejoins: f64,
     /// The last step of the record at which the motion may still be on it, without having missed a loop.
     matches_until: usize,
+    /// The stretch at the last position, if the readings have no noise.
+    stretch: Option<Stretch>,
 }
 
 /// The shift of a curve from its recorded position.
@@ -388,7 +447,7 @@ impl<'a> Retrace<'a> {
     /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it.
     #[inline]
     fn read_along(&mut self, target: f64) -> Option<(f64, f64)> {
-        let along = self.along.as_ref()?;
+        let along = self.along.as_mut()?;
         let Along {
             direction, shift, ..
         } = *along;
@@ -401,6 +460,25 @@ impl<'a> Retrace<'a> {
             return None;
         }
         let piece = &self.path.pieces[self.piece];
+        if let Some(stretch) = &mut along.stretch {
+            while (at - stretch.end) * direction >= 0.0 {
+                *stretch = self.path.stretch(piece, direction, stretch.ends + 1);
+            }
+            let Stretch {
+                on_it,
+                displacement_slope,
+                force_slope,
+                ..
+            } = *stretch;
+            let further = at - on_it.target;
+            // At several readings with one target, the present one counts.
+            if further != 0.0 {
+                return Some((
+                    on_it.displacement + displacement_slope * further + (target - at),
+                    on_it.force + force_slope * further + shift.force,
+                ));
+            }
+        }
         let step = self.looked_from();
         let (displacement, force) = self.path.on(piece, direction, step, at, &mut self.searched);
         Some((displacement + (target - at), force + shift.force))
@@ -422,9 +500,11 @@ impl<'a> Retrace<'a> {
             .and_then(|next| next.rejoins)
             .map(|left| self.turns[left]);
         let endless = direction * f64::INFINITY;
+        let shift = self.shift();
         Some(Along {
             direction,
-            shift: self.shift(),
+            stretch: path.stretch_at(piece, direction, self.position - shift.position),
+            shift,
             from: piece.before.map_or(-endless, |_| piece.begin.target),
             to: piece
                 .after
