@@ -80,8 +80,8 @@ pub struct ImpactConstants {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Numbers {
     first: f64,
-    /// None while each is as expected.
-    each: Option<Vec<f64>>,
+    /// Empty while each is as expected.
+    each: Vec<f64>,
 }
 
 /// How many numbers a step has.
@@ -91,7 +91,7 @@ const NUMBERS: usize = 26;
 static NO_NUMBERS: [Numbers; NUMBERS] = [const {
     Numbers {
         first: f64::NAN,
-        each: None,
+        each: Vec::new(),
     }
 }; NUMBERS];
 
@@ -139,13 +139,15 @@ impl ImpactSteps {
             expected[index] = firsts[index].first;
         }
         let mut unexpected = 0_u32;
-        let kept = self.numbers.iter_mut().flat_map(|kept| kept.iter_mut());
-        for (index, kept) in kept.enumerate() {
-            if let Some(each) = &mut kept.each {
-                each.push(numbers[index]);
-            } else {
-                let same = numbers[index].to_bits() == expected[index].to_bits();
-                unexpected |= u32::from(!same) << index;
+        for (index, (number, expected)) in numbers.iter().zip(&expected).enumerate() {
+            unexpected |= u32::from(number.to_bits() != expected.to_bits()) << index;
+        }
+        if let Some(kept) = &mut self.numbers {
+            for (index, kept) in kept.iter_mut().enumerate() {
+                if !kept.each.is_empty() {
+                    kept.each.push(numbers[index]);
+                    unexpected &= !(1 << index);
+                }
             }
         }
         if unexpected != 0 {
@@ -162,7 +164,7 @@ impl ImpactSteps {
             each.extend(self.iter().map(|step| step.numbers()[index]));
             each.push(next[index]);
             if let Some(numbers) = &mut self.numbers {
-                numbers[index].each = Some(each);
+                numbers[index].each = each;
             }
         }
     }
@@ -195,10 +197,7 @@ impl ImpactSteps {
     fn at(&self, index: usize) -> ImpactStep {
         let numbers = self.numbers();
         self.step(index, self.states[index], |number, expected| {
-            let each = numbers[number].each.as_ref();
-            each.map_or(expected, |each| {
-                each.get(index).copied().unwrap_or(f64::NAN)
-            })
+            numbers[number].each.get(index).copied().unwrap_or(expected)
         })
     }
 
@@ -403,7 +402,7 @@ mod tests {
     fn step_of(step: u64, numbers: [f64; NUMBERS]) -> ImpactStep {
         let numbers = numbers.map(|first| Numbers {
             first,
-            each: Some(vec![first]),
+            each: vec![first],
         });
         let steps = ImpactSteps {
             first: step,
@@ -418,7 +417,7 @@ mod tests {
     fn kept(steps: &ImpactSteps) -> Vec<usize> {
         let numbers = steps.numbers().iter().enumerate();
         numbers
-            .filter(|(_, numbers)| numbers.each.is_some())
+            .filter(|(_, numbers)| !numbers.each.is_empty())
             .map(|(index, _)| index)
             .collect()
     }
