@@ -71,7 +71,7 @@ pub fn rerun(
         force,
     };
     let mut reading = 0;
-    // Each step waits for its reading.
+    // Each step waits for its reading, so the arithmetic of unchanged instruments is left out.
     let unchanged = readings.leaves_unchanged(0);
     run(
         input,

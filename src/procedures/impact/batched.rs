@@ -1,7 +1,7 @@
 //! Impacts that run in batches, for studies. In: the plan of a run whose only procedure is an impact. Out: its outcome, and the record of
 //! its procedure without steps; or why the impact has to run on the rig. It moves nothing.
 //!
-//! On an ideal rig every reading is its target and the force there, so the steps of `physics::impact::batch` are those of the run. An
+//! On an ideal rig every reading at rest is its target and the force there, so the steps of `physics::impact::batch` are those of the run. An
 //! impact beyond a limit is integrated again, to find the step in which the guard stops it.
 
 use crate::procedures::impact::results::{of_impact, of_steps};
@@ -81,9 +81,10 @@ impl BatchedImpact {
         let specimen = &whole.specimens[plan.specimen];
         let behaviour = specimen.behaviour.as_ref()?;
         let relaxes = !RelaxationState::new(behaviour).is_none();
-        // At rest a damper has no force, and friction stays.
-        let stops = plan.stepping.mode == Mode::RampAndHold && specimen.coulomb == 0.0;
-        if !(is_ideal(whole) && stops) || relaxes {
+        let stops = plan.stepping.mode == Mode::RampAndHold;
+        // A damper has no force at rest; friction remains.
+        let has_friction = specimen.coulomb != 0.0;
+        if !(is_ideal(whole) && stops) || has_friction || relaxes {
             return None;
         }
         let striker = &whole.strikers[plan.striker];
@@ -263,7 +264,7 @@ pub(crate) fn run(
     }
 }
 
-/// Whether every reading of the rig is the target and the force there, and no limit depends on more than the reach of an impact.
+/// Whether every reading of the rig at rest is the target and the force there, and no limit depends on more than the reach of an impact.
 fn is_ideal(plan: &Plan) -> bool {
     let Some(link) = plan.rig.link.as_virtual() else {
         return false;

@@ -1,5 +1,5 @@
-//! Steps on an ideal rig, where every reading is the target and the force of the specimen there. In: targets. Out: readings inside every
-//! limit. Whatever cannot exceed a limit in such a step is checked once.
+//! Steps on an ideal rig, where every reading at rest is the target and the force of the specimen there. In: targets. Out: readings
+//! inside every limit. Whatever cannot exceed a limit in such a step is checked once.
 
 use super::{Guard, increment, inside};
 use crate::safety::failpoint::{Guarding, on};

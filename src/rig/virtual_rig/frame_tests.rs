@@ -226,14 +226,17 @@ fn settles_when_every_storey_has_nearly_relaxed() {
     );
 }
 
-/// 3 kN/m with 50 N·s/m and 0.25 N; 2 kN/m with 20 N·s/m.
-fn damped_rig(link: VirtualLink) -> VirtualRig {
+/// 3 kN/m with 50 N·s/m and this friction \[N\]; 2 kN/m with 20 N·s/m.
+fn damped_rig(link: VirtualLink, friction: f64) -> VirtualRig {
     let storey = |stiffness, damping, coulomb| Storey {
         damping,
         coulomb,
         ..Storey::new(1.0, stiffness, Behaviour::Elastic { stiffness })
     };
-    let frame = Frame::of_storeys(vec![storey(3000.0, 50.0, 0.25), storey(2000.0, 20.0, 0.0)]);
+    let frame = Frame::of_storeys(vec![
+        storey(3000.0, 50.0, friction),
+        storey(2000.0, 20.0, 0.0),
+    ]);
     VirtualRig::of_frame(link, AT_ONCE, &frame, 1.0)
 }
 
@@ -253,7 +256,7 @@ const UPPER: Path = Path {
 };
 
 fn readings(link: VirtualLink, samples: usize) -> Vec<crate::Reading> {
-    let (mut rig, mut readings) = (damped_rig(link), Vec::new());
+    let (mut rig, mut readings) = (damped_rig(link, 0.25), Vec::new());
     rig.follow_paths_after(&[LOWER, UPPER], samples, 0, &mut |reading| {
         readings.push(reading);
         Ok(())
@@ -289,6 +292,53 @@ fn storeys_are_damped_at_the_velocity_of_their_drifts() {
     }
 }
 
+/// Its dampers have no force at rest, so in one call or in four the floors are at the same places at the same time with the same forces, and
+/// the next stroke starts with the same velocity.
+#[test]
+fn a_damped_frame_without_friction_is_ideal() {
+    let ideal = VirtualLink::default();
+    assert!(!damped_rig(ideal, 0.25).is_ideal());
+    let (mut once, mut stepwise) = (damped_rig(ideal, 0.0), damped_rig(ideal, 0.0));
+    let mut reading = once.read().unwrap();
+    for targets in [[1e-3, 3e-3], [-2e-3, 1e-3], [-2e-3, 1e-3], [2e-3, 2e-3]] {
+        assert!(once.is_ideal());
+        let whole = once.at_once().expect("an ideal rig");
+        whole.step(&targets, Some(0.01), 0.5, &mut reading).unwrap();
+        stepwise.propose(&targets, Some(0.01)).unwrap();
+        stepwise.execute().unwrap();
+        stepwise.pause(0.5).unwrap();
+        assert_eq!(reading, stepwise.read().unwrap());
+        let [lower, upper] = [3000.0 * targets[0], 2000.0 * (targets[1] - targets[0])];
+        assert!(
+            (reading.force[0] - (lower - upper)).abs() < 1e-12,
+            "{reading:?}"
+        );
+        assert!((reading.force[1] - upper).abs() < 1e-12, "{reading:?}");
+    }
+    let paths = [LOWER, UPPER].map(|path| Path {
+        from: 2e-3,
+        to: path.to + 2e-3,
+        ..path
+    });
+    let stroke = |rig: &mut VirtualRig| {
+        let mut forces = Vec::new();
+        rig.follow_paths_after(&paths, 1, 0, &mut |reading| {
+            forces.push(reading.force);
+            Ok(())
+        })
+        .unwrap();
+        forces
+    };
+    let forces = stroke(&mut once);
+    // Drifts of 4 mm and −1 mm, at 30 mm/s and −40 mm/s.
+    let upper = -2.0 - 0.8;
+    assert!(
+        (forces[0][0] - (12.0 + 1.5 - upper)).abs() < 1e-12,
+        "{forces:?}"
+    );
+    assert_eq!(forces, stroke(&mut stepwise));
+}
+
 #[test]
 fn the_number_of_readings_is_of_no_account_to_a_lag() {
     let link = VirtualLink {
@@ -306,7 +356,7 @@ fn the_number_of_readings_is_of_no_account_to_a_lag() {
 /// At rest the damper force is zero, and friction keeps the direction of the last motion.
 #[test]
 fn friction_stays_through_a_pause() {
-    let mut rig = damped_rig(VirtualLink::default());
+    let mut rig = damped_rig(VirtualLink::default(), 0.25);
     rig.propose(&[1e-3, 1e-3], Some(0.01)).unwrap();
     rig.execute().unwrap();
     rig.pause(1.0).unwrap();
@@ -323,12 +373,12 @@ fn paths_that_are_not_of_one_length_lead_nowhere() {
         ..UPPER
     };
     assert!(
-        damped_rig(VirtualLink::default())
+        damped_rig(VirtualLink::default(), 0.25)
             .follow_paths_after(&[LOWER, short], 4, 0, &mut |_| Ok(()))
             .is_err()
     );
     assert!(
-        damped_rig(VirtualLink::default())
+        damped_rig(VirtualLink::default(), 0.25)
             .follow_paths_after(&[LOWER], 4, 0, &mut |_| Ok(()))
             .is_err()
     );

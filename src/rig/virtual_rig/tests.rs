@@ -228,15 +228,22 @@ fn refuses_what_it_cannot_do() {
 /// stroke measures it.
 #[test]
 fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
-    for damping in [0.0, 50.0] {
-        let ideal = || {
-            VirtualRig::new(
-                VirtualLink::default(),
-                AT_ONCE,
-                Some(&specimen(damping, 0.0)),
-                1.0,
-            )
-        };
+    let rate = Behaviour::Rate {
+        of: Box::new(Behaviour::Elastic { stiffness: 1000.0 }),
+        reference_velocity: 0.01,
+        exponent: 1.0,
+    };
+    let faster = Specimen {
+        behaviour: Some(rate),
+        ..specimen(0.0, 0.0)
+    };
+    // The force at 1 mm, reached at 10 mm/s.
+    for (specimen, moving) in [
+        (specimen(0.0, 0.0), 1.0),
+        (specimen(50.0, 0.0), 1.5),
+        (faster, 2.0),
+    ] {
+        let ideal = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen), 1.0);
         let (mut once, mut stepwise) = (ideal(), ideal());
         let mut reading = once.read().unwrap();
         for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
@@ -257,7 +264,7 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
         }
         for rig in [&mut once, &mut stepwise] {
             rig.traverse(&[1e-3], 0.01, 1, &mut |reading| {
-                assert!((reading.force[0] - (1.0 + 0.01 * damping)).abs() < 1e-12);
+                assert!((reading.force[0] - moving).abs() < 1e-12);
                 Ok(())
             })
             .unwrap();

@@ -176,7 +176,8 @@ impl RecordedPath {
         }
     }
 
-    /// The stretch of a piece at `position` \[m\]. None where the noise of readings counts: their neighbours determine no slope.
+    /// The stretch of a piece at `position` \[m\]. None if the readings have noise, because neighbours then determine no slope; for a
+    /// continuous motion, whose positions may go back; and for a record without motion.
     fn stretch_at(&self, piece: &Piece, direction: f64, position: f64) -> Option<Stretch> {
         if self.least > 0.0 || self.continuous.is_some() || direction == 0.0 {
             return None;

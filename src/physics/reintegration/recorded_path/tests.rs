@@ -191,6 +191,34 @@ fn a_search_from_the_last_place_finds_the_same_numbers() {
     }
 }
 
+/// Where the record pauses, several readings have one target: there the present one counts, and beyond them the nearest of them.
+#[test]
+fn a_pause_in_the_record_is_passed_at_its_last_reading() {
+    let readings = [
+        (0.0, 0.0),
+        (1.0, 10.0),
+        (1.0, 12.0),
+        (2.0, 20.0),
+        (3.0, 30.0),
+    ];
+    let readings = readings.map(|(target, force)| Reading {
+        target,
+        displacement: target,
+        force,
+    });
+    let path = RecordedPath::new(readings.to_vec(), None, 10.0, DeclaredNoise::NONE).unwrap();
+    for (targets, forces) in [
+        ([1.0, 1.0, 2.0, 3.0], [10.0, 12.0, 20.0, 30.0]),
+        ([0.5, 1.0, 1.5, 2.5], [5.0, 12.0, 16.0, 25.0]),
+        ([0.5, 1.5, 1.5, 1.75], [5.0, 16.0, 16.0, 18.0]),
+    ] {
+        let mut retrace = path.retrace(1);
+        let read = targets.map(|target| retrace.move_to(target).1);
+        assert_eq!(read, forces, "{targets:?}");
+        assert!(!retrace.departed());
+    }
+}
+
 /// A continuous motion is cut where its velocity changes its sign. Its positions may go back a little before that: a position is then
 /// found between the first two readings that enclose it.
 #[test]
