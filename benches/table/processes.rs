@@ -174,6 +174,7 @@ impl Processes {
     fn studies(&self) -> Vec<Row<'_>> {
         let of_149 = self.plan("study.psd", STUDY);
         let of_3000 = STUDY
+            .replace("300 N/m", "327.65 N/m")
             .replace("duration = 1 s", "duration = 0.3 s\nuntil = duration")
             .replace("time_step = 2 ms", "time_step = 0.1 ms");
         let scattered = |runs: &str| of_3000.replace("runs = 100000", runs);

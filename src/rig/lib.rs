@@ -313,8 +313,8 @@ pub trait Rig {
         None
     }
 
-    /// Whether it is a virtual rig, or one that is recorded, on which every reading at rest is its target and the force of the specimen there.
-    /// It is then [`Rig::at_once`] too.
+    /// Whether it is a virtual rig, or one that is recorded, on which every reading at rest is its target and the force of the specimen
+    /// there. It is then [`Rig::at_once`] too.
     fn is_ideal(&mut self) -> bool {
         false
     }

@@ -162,17 +162,7 @@ impl Springs {
         }
     }
 
-    /// Whether the cells measure more than the restoring forces.
-    pub(super) fn have_feedback(&self) -> bool {
-        match self {
-            Self::Storeys(storeys) => storeys
-                .iter()
-                .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none()),
-            Self::Matrix { .. } => false,
-        }
-    }
-
-    /// The same with the axes at rest, where friction stays and a damper has no force.
+    /// Whether the cells measure more than the restoring forces with the axes at rest, where friction stays and a damper has no force.
     pub(super) fn have_feedback_at_rest(&self) -> bool {
         match self {
             Self::Storeys(storeys) => storeys
@@ -214,9 +204,10 @@ impl Springs {
         velocities: impl Iterator<Item = f64>,
         force: &mut [f64],
     ) {
-        let have_feedback = self.have_feedback();
         if let Self::Storeys(storeys) = self
-            && have_feedback
+            && storeys
+                .iter()
+                .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
         {
             let mut shears = Vec::with_capacity(storeys.len());
             each_drift(storeys, velocities, |storey, velocity| {

@@ -224,8 +224,25 @@ fn refuses_what_it_cannot_do() {
     assert!(rig.execute().is_err(), "nothing was proposed");
 }
 
-/// In one call or in four, an ideal rig is at the same place at the same time with the same force. A damper has no force at rest; the next
-/// stroke measures it.
+/// In one call or in four, an ideal rig is at the same place at the same time with the same force: its reading.
+pub(super) fn step_in_one_call_or_four(
+    once: &mut VirtualRig,
+    stepwise: &mut VirtualRig,
+    targets: &[f64],
+) -> Reading {
+    assert!(once.is_ideal());
+    let mut reading = once.read().unwrap();
+    let whole = once.at_once().expect("an ideal rig");
+    whole.step(targets, Some(0.01), 0.5, &mut reading).unwrap();
+    stepwise.propose(targets, Some(0.01)).unwrap();
+    stepwise.execute().unwrap();
+    stepwise.pause(0.5).unwrap();
+    assert_eq!(reading, stepwise.read().unwrap());
+    assert_eq!(once.read_moved().unwrap(), stepwise.read_moved().unwrap());
+    reading
+}
+
+/// A damper has no force at rest; the next stroke measures it.
 #[test]
 fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
     let rate = Behaviour::Rate {
@@ -245,22 +262,12 @@ fn an_ideal_rig_reads_its_targets_and_the_forces_there() {
     ] {
         let ideal = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen), 1.0);
         let (mut once, mut stepwise) = (ideal(), ideal());
-        let mut reading = once.read().unwrap();
         for target in [1e-3, -2e-3, -2e-3, 0.5e-3] {
-            assert!(once.is_ideal());
-            let whole = once.at_once().expect("an ideal rig");
-            whole
-                .step(&[target], Some(0.01), 0.5, &mut reading)
-                .unwrap();
-            stepwise.propose(&[target], Some(0.01)).unwrap();
-            stepwise.execute().unwrap();
-            stepwise.pause(0.5).unwrap();
-            assert_eq!(reading, stepwise.read().unwrap());
+            let reading = step_in_one_call_or_four(&mut once, &mut stepwise, &[target]);
             assert_eq!(
                 (reading.displacement[0], reading.force[0]),
                 (target, 1000.0 * target)
             );
-            assert_eq!(once.read_moved().unwrap(), stepwise.read_moved().unwrap());
         }
         for rig in [&mut once, &mut stepwise] {
             rig.traverse(&[1e-3], 0.01, 1, &mut |reading| {
