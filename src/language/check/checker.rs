@@ -6,8 +6,8 @@ use std::rc::Rc;
 use crate::codes::{E404, E405};
 use crate::syntax::ast::Expr;
 use psd_physics::structure::section::Section;
-use psd_plan::Frame;
 use psd_plan::formula::{Formula, ProcedureId, ResultReference};
+use psd_plan::{Behaviour, Frame};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Sources, Span};
 use psd_text::units::{Dimension, Quantity};
@@ -30,10 +30,17 @@ pub struct Traced<T> {
     pub is_bound: bool,
 }
 
+/// What is read again and again.
+pub type Reread<T> = Traced<Option<Rc<T>>>;
+
 /// Values that no bound value reaches and whose evaluation left nothing else behind, so that a check with other bound values begins
 /// with them.
 #[derive(Default)]
-pub struct FixedValues(BTreeMap<Node, Known>);
+pub struct FixedValues {
+    known: BTreeMap<Node, Known>,
+    frames: BTreeMap<usize, Reread<Frame>>,
+    behaviours: BTreeMap<usize, Reread<Behaviour>>,
+}
 
 /// A node that is evaluated.
 struct Known {
@@ -109,7 +116,9 @@ pub struct Checker<'a> {
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
     /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
-    pub frames: BTreeMap<usize, Traced<Option<Rc<Frame>>>>,
+    pub frames: BTreeMap<usize, Reread<Frame>>,
+    /// Restoring-force models of the other specimens, likewise.
+    pub behaviours: BTreeMap<usize, Reread<Behaviour>>,
     pub diagnostics: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
@@ -119,8 +128,6 @@ pub struct Checker<'a> {
     pub unread: Vec<Span>,
     /// Every word of those lines.
     unread_words: BTreeSet<&'a str>,
-    /// Diagnostics of the restoring-force model of each block.
-    reported: BTreeMap<usize, Vec<Diagnostic>>,
     /// Spans that one diagnostic explains in full.
     pub explained: Vec<Span>,
     known: BTreeMap<Node, Known>,
@@ -226,7 +233,7 @@ impl<'a> Checker<'a> {
         names_lost: bool,
     ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        let (data, frames) = (Vec::new(), BTreeMap::new());
+        let (data, frames, behaviours) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         let words = |span: &Span| {
             sources
                 .text(*span)
@@ -239,12 +246,12 @@ impl<'a> Checker<'a> {
             loader,
             data,
             frames,
+            behaviours,
             sections: BTreeMap::new(),
             diagnostics,
             names_lost,
             unread,
             unread_words,
-            reported: BTreeMap::new(),
             explained: Vec::new(),
             known,
             used,
@@ -302,14 +309,25 @@ impl<'a> Checker<'a> {
 
     /// Begins with the values of the check before, of the same plan without warnings.
     pub fn begin_with(&mut self, fixed: FixedValues) {
-        self.known = fixed.0;
+        let FixedValues {
+            known,
+            frames,
+            behaviours,
+        } = fixed;
+        (self.known, self.frames, self.behaviours) = (known, frames, behaviours);
     }
 
     /// The values with which the next check may begin.
     pub fn fixed_values(&mut self) -> FixedValues {
-        let mut known = std::mem::take(&mut self.known);
-        known.retain(|_, known| known.is_fixed);
-        FixedValues(known)
+        let mut fixed = FixedValues {
+            known: std::mem::take(&mut self.known),
+            frames: std::mem::take(&mut self.frames),
+            behaviours: std::mem::take(&mut self.behaviours),
+        };
+        fixed.known.retain(|_, known| known.is_fixed);
+        fixed.frames.retain(|_, frame| frame.is_fixed());
+        fixed.behaviours.retain(|_, behaviour| behaviour.is_fixed());
+        fixed
     }
 
     /// The numbers of diagnostics, of results and of entries of their lists that were read so far.
@@ -408,17 +426,6 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Drops diagnostics of this block from `start` on that were reported before.
-    pub fn drop_repeated(&mut self, start: usize, block: usize) {
-        let before = self.reported.entry(block).or_default();
-        for diagnostic in self.diagnostics.split_off(start) {
-            if !before.contains(&diagnostic) {
-                before.push(diagnostic.clone());
-                self.diagnostics.push(diagnostic);
-            }
-        }
-    }
-
     fn describe(&self, node: Node) -> (String, Span) {
         match node {
             Node::Value(index) => {
@@ -454,6 +461,11 @@ impl<T> Traced<Option<T>> {
             value: None,
             is_bound: false,
         }
+    }
+
+    /// Whether it is the same with other bound values.
+    const fn is_fixed(&self) -> bool {
+        self.value.is_some() && !self.is_bound
     }
 }
 

@@ -11,6 +11,8 @@ mod scale;
 mod spring;
 mod table_file;
 
+use std::rc::Rc;
+
 use crate::check::checker::Checker;
 use crate::check::violations::MissingField;
 use crate::check::wording::shown;
@@ -127,7 +129,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     // A real specimen needs no model; a missing model of a virtual one has a separate diagnostic.
     let behaviour = match checker.field(block, fields::BEHAVIOUR.name) {
         None if checker.real_rig.is_some() => Some(None),
-        _ => behaviour(checker, block, head).map(Some),
+        _ => behaviour(checker, block, head).map(|behaviour| Some((*behaviour).clone())),
     };
     let (damping, coulomb) = (
         checker.constant(block, fields::DAMPING.name),
@@ -419,7 +421,7 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
         });
     }
     let behaviour = behaviour(checker, block, requested_at)?;
-    let (value, reason) = match (name, &behaviour) {
+    let (value, reason) = match (name, &*behaviour) {
         ("stiffness", _) => (behaviour.initial_stiffness(), ""),
         ("capacity", _) => (behaviour.capacity(), "its force is unbounded"),
         ("elastic_mass" | "plastic_mass" | "lumped_mass", _) => {
@@ -484,8 +486,17 @@ fn help_without(name: &str, behaviour: &Behaviour) -> &'static str {
 }
 
 /// The model; an error in it is reported once, however often it is requested.
-pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Behaviour> {
-    let known = checker.diagnostics.len();
+pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Rc<Behaviour>> {
+    if let Some(known) = checker.behaviours.get(&block).cloned() {
+        return checker.read_again(&known);
+    }
+    let traced = checker.traced(|checker| new_behaviour(checker, block, requested_at).map(Rc::new));
+    let behaviour = traced.value.clone();
+    checker.behaviours.insert(block, traced);
+    behaviour
+}
+
+fn new_behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Behaviour> {
     let stated = |checker: &Checker, fields: &[&str]| {
         fields
             .iter()
@@ -504,7 +515,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
         mass_per_length,
         own_mass,
     };
-    let behaviour = checker.within_entry(
+    checker.within_entry(
         block,
         fields::BEHAVIOUR.name,
         requested_at,
@@ -527,9 +538,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
                 },
             )
         },
-    );
-    checker.drop_repeated(known, block);
-    behaviour
+    )
 }
 
 /// Limits that let the specimen exceed its table.
