@@ -37,8 +37,8 @@ pub(super) fn decide(
         }
     };
     let distance_uncertainty = known
-        .and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record))
-        .filter(|_| !unknown);
+        .filter(|_| !unknown)
+        .and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record));
     let margin_uncertainty = distance_uncertainty.filter(|_| rule == DecisionRule::Guarded);
     let conforms = known
         .zip(distance_uncertainty)
@@ -94,6 +94,9 @@ pub(super) fn decide(
 
 /// Whether the plan compares a plain number with a percentage, or reads results that are printed in percent.
 fn in_percent(condition: &Condition) -> bool {
+    if condition.dimension != Dimension::NUMBER {
+        return false;
+    }
     let mut references = Vec::new();
     condition.value.collect_references(&mut references);
     let fractions = !references.is_empty()
@@ -101,7 +104,7 @@ fn in_percent(condition: &Condition) -> bool {
             .iter()
             .all(|read| printed(read.name) == Printed::InPercent);
     let stated = matches!(condition.test, Test::Compare { .. }) && condition.text.contains('%');
-    condition.dimension == Dimension::NUMBER && (fractions || stated)
+    fractions || stated
 }
 
 /// What is known of the uncertainty of the results that the condition reads.
