@@ -44,7 +44,7 @@ const IMPURE: &[&str] = &[
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["polars"], &["report", "study/data_set"]),
-    (&["polars_parquet", "zmij"], &["report"]),
+    (&["polars_parquet", "zmij", "zstd"], &["report"]),
     (
         &[
             "plotters",
