@@ -107,6 +107,21 @@ pub struct VirtualLink {
 }
 
 impl VirtualLink {
+    /// Whether every reading at rest is the target and the force there: the sensors have no errors, and the actuators reach their targets
+    /// without lag.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        let errors = [
+            self.noise,
+            self.resolution,
+            self.force_resolution,
+            self.lag,
+            self.tracking,
+            self.drift,
+        ];
+        errors.iter().all(|error| *error == 0.0)
+    }
+
     /// An ideal rig instead of another: its readings have no errors, and the predicted uncertainty includes the errors that the other
     /// declares.
     #[must_use]

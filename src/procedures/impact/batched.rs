@@ -269,17 +269,9 @@ fn is_ideal(plan: &Plan) -> bool {
     let Some(link) = plan.rig.link.as_virtual() else {
         return false;
     };
-    let errors = [
-        link.noise,
-        link.resolution,
-        link.force_resolution,
-        link.lag,
-        link.tracking,
-        link.drift,
-    ];
     let limits = &plan.limits;
     let not_watched = |limit: Interval| !limit.is_bounded();
-    errors.iter().all(|error| *error == 0.0)
+    link.is_exact()
         && link.predicted.is_none()
         && plan.rig.polarity == 1.0
         && plan.rig.zero_drift.is_none()

@@ -128,15 +128,9 @@ impl VirtualRig {
         };
         if is_still && link.tracking == 0.0 {
             rig.wait = rig.settling(&at_rest);
-            let errors = [
-                link.noise,
-                link.resolution,
-                link.force_resolution,
-                link.drift,
-            ];
             rig.is_ideal = rig.wait.is_some()
                 && sign == 1.0
-                && errors.iter().all(|error| *error == 0.0)
+                && link.is_exact()
                 && !rig.springs.have_feedback_at_rest();
         }
         rig
