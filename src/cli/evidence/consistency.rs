@@ -3,9 +3,10 @@
 
 use crate::files::provenance::recorded_id;
 use crate::files::recorded_run::{ReadRecord, plan_of};
+use psd::report::Provenance;
 use psd::run::replay::{self, LoggedRun};
 use psd_plan::Plan;
-use psd_rig::journal::{EntryKind, Recovered};
+use psd_rig::journal::EntryKind;
 
 /// Compares the entries of a run log with each other.
 ///
@@ -49,8 +50,8 @@ fn begins(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
 }
 
 /// Observations on a consistent run log.
-pub fn remarks(recovered: &Recovered) -> String {
-    match crate::files::wall_clock::jumps(&recovered.lines).len() {
+pub fn remarks(provenance: &Provenance) -> String {
+    match provenance.real.as_ref().map_or(0, |real| real.jumps.len()) {
         0 => String::new(),
         1 => ", its wall clock jumped once".to_owned(),
         jumps => format!(", its wall clock jumped {jumps} times"),

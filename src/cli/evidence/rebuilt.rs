@@ -199,7 +199,7 @@ impl Rebuilt {
             format!(", {} bytes incomplete at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let remarks = consistency::remarks(&read.recovered);
+        let remarks = consistency::remarks(&read.provenance);
         let mut findings = vec![match consistency::check_consistency(&read) {
             Ok(()) => Finding::sound(
                 "record",

@@ -95,7 +95,8 @@ impl Line {
         reader: impl FnOnce(Plain<'_>) -> Option<T>,
     ) -> serde_json::Result<T> {
         let read = self.text.read(self.place(), |json| {
-            reader(Plain::of(json)).map_or_else(|| serde_json::from_slice(json), Ok)
+            let plain = str::from_utf8(json).map(Plain::of).ok().and_then(reader);
+            plain.map_or_else(|| serde_json::from_slice(json), Ok)
         });
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
     }

@@ -1,16 +1,16 @@
 //! Reading of JSON in the plain form that psd writes: no spaces, strings without escapes except `\\` and `\"`, numbers that are not near the
-//! limits of a float. In: bytes. Out: values, or None for any other form, which `serde_json` reads or refuses.
+//! limits of a float. In: text. Out: values, or None for any other form, which `serde_json` reads or refuses.
 
 /// Deepest nesting that is read here.
 const DEEPEST: u32 = 16;
 
-/// The bytes that are not read yet.
+/// The text that is not read yet.
 #[derive(Clone, Copy, Debug)]
-pub struct Plain<'a>(&'a [u8]);
+pub struct Plain<'a>(&'a str);
 
 impl<'a> Plain<'a> {
     #[must_use]
-    pub const fn of(json: &'a [u8]) -> Self {
+    pub const fn of(json: &'a str) -> Self {
         Self(json)
     }
 
@@ -20,26 +20,26 @@ impl<'a> Plain<'a> {
         self.0.is_empty().then_some(())
     }
 
-    /// Reads these bytes if they are next.
-    pub fn skip(&mut self, bytes: &[u8]) -> bool {
-        let rest = self.0.strip_prefix(bytes);
+    /// Reads this text if it is next.
+    pub fn skip(&mut self, text: &str) -> bool {
+        let rest = self.0.strip_prefix(text);
         self.0 = rest.unwrap_or(self.0);
         rest.is_some()
     }
 
-    /// Reads these bytes, which must be next.
-    pub fn expect(&mut self, bytes: &[u8]) -> Option<()> {
-        self.skip(bytes).then_some(())
+    /// Reads this text, which must be next.
+    pub fn expect(&mut self, text: &str) -> Option<()> {
+        self.skip(text).then_some(())
     }
 
     /// A finite number.
     pub fn number(&mut self) -> Option<f64> {
-        str::from_utf8(self.number_text()?).ok()?.parse().ok()
+        self.number_text()?.parse().ok()
     }
 
     /// A whole number that is not negative.
     pub fn whole(&mut self) -> Option<u64> {
-        str::from_utf8(self.number_text()?).ok()?.parse().ok()
+        self.number_text()?.parse().ok()
     }
 
     /// `[1.0,2.0]`
@@ -58,22 +58,22 @@ impl<'a> Plain<'a> {
         usual: usize,
         mut item: impl FnMut(&mut Self) -> Option<T>,
     ) -> Option<Vec<T>> {
-        self.expect(b"[")?;
+        self.expect("[")?;
         let mut items = Vec::with_capacity(usual);
-        if self.skip(b"]") {
+        if self.skip("]") {
             return Some(items);
         }
         loop {
             items.push(item(self)?);
-            if self.skip(b"]") {
+            if self.skip("]") {
                 return Some(items);
             }
-            self.expect(b",")?;
+            self.expect(",")?;
         }
     }
 
     pub fn string(&mut self) -> Option<String> {
-        let text = str::from_utf8(self.string_text()?).ok()?;
+        let text = self.string_text()?;
         if !text.contains('\\') {
             return Some(text.to_owned());
         }
@@ -90,24 +90,24 @@ impl<'a> Plain<'a> {
     #[must_use]
     pub fn time_of_object(mut self) -> Option<Option<f64>> {
         let mut time = None;
-        self.expect(b"{")?;
-        if !self.skip(b"}") {
+        self.expect("{")?;
+        if !self.skip("}") {
             loop {
                 let name = self.string_text()?;
-                self.expect(b":")?;
+                self.expect(":")?;
                 let mut value = self;
                 self.value(DEEPEST)?;
-                if name == b"t" {
+                if name == "t" {
                     // Only the last of two counts.
                     if time.is_some() {
                         return None;
                     }
                     time = Some(value.number()?);
                 }
-                if self.skip(b"}") {
+                if self.skip("}") {
                     break;
                 }
-                self.expect(b",")?;
+                self.expect(",")?;
             }
         }
         self.end()?;
@@ -116,36 +116,36 @@ impl<'a> Plain<'a> {
 
     /// Any value.
     fn value(&mut self, depth: u32) -> Option<()> {
-        match self.0.first()? {
+        match self.0.as_bytes().first()? {
             b'"' => self.string_text().map(drop),
             b'[' | b'{' if depth == 0 => None,
             b'[' => self.list(0, |item| item.value(depth - 1)).map(drop),
             b'{' => {
-                self.expect(b"{")?;
-                if self.skip(b"}") {
+                self.expect("{")?;
+                if self.skip("}") {
                     return Some(());
                 }
                 loop {
                     self.string_text()?;
-                    self.expect(b":")?;
+                    self.expect(":")?;
                     self.value(depth - 1)?;
-                    if self.skip(b"}") {
+                    if self.skip("}") {
                         return Some(());
                     }
-                    self.expect(b",")?;
+                    self.expect(",")?;
                 }
             }
-            b't' => self.expect(b"true"),
-            b'f' => self.expect(b"false"),
-            b'n' => self.expect(b"null"),
+            b't' => self.expect("true"),
+            b'f' => self.expect("false"),
+            b'n' => self.expect("null"),
             _ => self.number_text().map(drop),
         }
     }
 
-    /// The bytes between the quotes, with their escapes.
-    fn string_text(&mut self) -> Option<&'a [u8]> {
-        self.expect(b"\"")?;
-        let text = self.0;
+    /// The text between the quotes, with its escapes.
+    fn string_text(&mut self) -> Option<&'a str> {
+        self.expect("\"")?;
+        let text = self.0.as_bytes();
         let mut at = 0;
         loop {
             match text.get(at)? {
@@ -155,14 +155,15 @@ impl<'a> Plain<'a> {
                 _ => return None,
             }
         }
-        self.0 = &text[at + 1..];
-        Some(&text[..at])
+        let read = &self.0[..at];
+        self.0 = &self.0[at + 1..];
+        Some(read)
     }
 
-    /// The bytes of a number as JSON allows it, short and far from the largest float.
-    fn number_text(&mut self) -> Option<&'a [u8]> {
+    /// The text of a number as JSON allows it, short and far from the largest float.
+    fn number_text(&mut self) -> Option<&'a str> {
         const LONGEST: usize = 40;
-        let text = self.0;
+        let text = self.0.as_bytes();
         let digits = |from: usize| {
             let rest = text.get(from..).unwrap_or_default();
             rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
@@ -191,8 +192,9 @@ impl<'a> Plain<'a> {
         if at > LONGEST {
             return None;
         }
-        self.0 = &text[at..];
-        Some(&text[..at])
+        let (number, rest) = self.0.split_at(at);
+        self.0 = rest;
+        Some(number)
     }
 }
 
@@ -203,7 +205,7 @@ mod tests {
     use super::Plain;
 
     fn number(text: &str) -> Option<f64> {
-        let mut plain = Plain::of(text.as_bytes());
+        let mut plain = Plain::of(text);
         let number = plain.number()?;
         plain.end().map(|()| number)
     }
@@ -259,9 +261,9 @@ mod tests {
         ] {
             assert_eq!(number(text), None, "{text}");
         }
-        assert_eq!(Plain::of(b"12,").whole(), Some(12));
+        assert_eq!(Plain::of("12,").whole(), Some(12));
         for text in ["-1", "1.0", "1e2", "18446744073709551616"] {
-            assert_eq!(Plain::of(text.as_bytes()).whole(), None, "{text}");
+            assert_eq!(Plain::of(text).whole(), None, "{text}");
         }
     }
 
@@ -269,7 +271,7 @@ mod tests {
     fn a_text_is_the_same_or_is_left_to_the_other_reader() {
         for text in ["", "a b", "\\n", "a\\\\b", "\"q\"", "\\\"", "\\x1b"] {
             let json = serde_json::to_string(text).unwrap();
-            let mut plain = Plain::of(json.as_bytes());
+            let mut plain = Plain::of(&json);
             assert_eq!(plain.string().as_deref(), Some(text));
             assert_eq!(plain.end(), Some(()));
         }
@@ -281,7 +283,7 @@ mod tests {
             "\"\t\"",
             r#""\"#,
         ] {
-            assert_eq!(Plain::of(json.as_bytes()).string(), None, "{json}");
+            assert_eq!(Plain::of(json).string(), None, "{json}");
         }
     }
 
@@ -296,14 +298,10 @@ mod tests {
         for object in objects {
             let json = object.to_string();
             let time = object.get("t").and_then(Value::as_f64);
-            assert_eq!(
-                Plain::of(json.as_bytes()).time_of_object(),
-                Some(time),
-                "{json}"
-            );
+            assert_eq!(Plain::of(&json).time_of_object(), Some(time), "{json}");
             for end in 0..json.len() {
                 assert_eq!(
-                    Plain::of(&json.as_bytes()[..end]).time_of_object(),
+                    Plain::of(&json[..end]).time_of_object(),
                     None,
                     "{json} to {end}"
                 );
@@ -325,9 +323,9 @@ mod tests {
             r#"{"a":tru}"#,
             "{a:1}",
         ] {
-            assert_eq!(Plain::of(json.as_bytes()).time_of_object(), None, "{json}");
+            assert_eq!(Plain::of(json).time_of_object(), None, "{json}");
         }
         let deep = format!("{{\"a\":{}{}}}", "[".repeat(40), "]".repeat(40));
-        assert_eq!(Plain::of(deep.as_bytes()).time_of_object(), None);
+        assert_eq!(Plain::of(&deep).time_of_object(), None);
     }
 }

@@ -165,7 +165,7 @@ fn read_line(bytes: &[u8], found: &Recovered, text: &LogText) -> Result<(Line, C
     }
     let kind =
         EntryKind::of_word(parts.word).ok_or_else(|| Wrong::UnknownKind(short(parts.word)))?;
-    let time = match Plain::of(parts.json.as_bytes()).time_of_object() {
+    let time = match Plain::of(parts.json).time_of_object() {
         // Its position depends on its kind alone.
         Some(time) if !matches!(kind, EntryKind::Header | EntryKind::End) => {
             check_position(kind, &Value::Null, found)?;

@@ -56,28 +56,28 @@ macro_rules! optional {
 impl Body for IntentBody {
     fn of_plain(mut json: Plain<'_>) -> Option<Self> {
         let json = &mut json;
-        json.expect(b"{\"n\":")?;
+        json.expect("{\"n\":")?;
         let n = json.whole()?;
-        json.expect(b",\"t\":")?;
+        json.expect(",\"t\":")?;
         let t = json.number()?;
-        json.expect(b",\"to\":")?;
+        json.expect(",\"to\":")?;
         let to = json.numbers()?;
-        json.expect(b",\"speed\":")?;
-        let speed = if json.skip(b"null") {
+        json.expect(",\"speed\":")?;
+        let speed = if json.skip("null") {
             None
         } else {
             Some(json.number()?)
         };
-        let encoded = optional!(json, b",\"encoded\":", Plain::numbers);
-        json.expect(b",\"rate\":")?;
+        let encoded = optional!(json, ",\"encoded\":", Plain::numbers);
+        json.expect(",\"rate\":")?;
         let rate = json.number()?;
-        let wire = optional!(json, b",\"wire\":", Plain::string);
-        let id = optional!(json, b",\"id\":", Plain::whole);
-        let own = optional!(json, b",\"own\":", Plain::numbers);
-        let samples = optional!(json, b",\"samples\":", Plain::whole);
+        let wire = optional!(json, ",\"wire\":", Plain::string);
+        let id = optional!(json, ",\"id\":", Plain::whole);
+        let own = optional!(json, ",\"own\":", Plain::numbers);
+        let samples = optional!(json, ",\"samples\":", Plain::whole);
         let samples = samples.map(usize::try_from).transpose().ok()?;
-        let wall = optional!(json, b",\"wall\":", Plain::string);
-        json.expect(b"}")?;
+        let wall = optional!(json, ",\"wall\":", Plain::string);
+        json.expect("}")?;
         json.end()?;
         Some(Self {
             n,
@@ -99,17 +99,17 @@ impl Body for IntentBody {
 impl Body for SampleBody {
     fn of_plain(mut json: Plain<'_>) -> Option<Self> {
         let json = &mut json;
-        json.expect(b"{\"t\":")?;
+        json.expect("{\"t\":")?;
         let t = json.number()?;
-        json.expect(b",\"x\":")?;
+        json.expect(",\"x\":")?;
         let x = json.numbers()?;
-        json.expect(b",\"r\":")?;
+        json.expect(",\"r\":")?;
         let r = json.numbers()?;
-        let raw = optional!(json, b",\"raw\":", Plain::strings).unwrap_or_default();
-        let moved = optional!(json, b",\"moved\":", Plain::numbers);
+        let raw = optional!(json, ",\"raw\":", Plain::strings).unwrap_or_default();
+        let moved = optional!(json, ",\"moved\":", Plain::numbers);
         let moved = moved.map(TryInto::try_into).transpose().ok()?;
-        let wall = optional!(json, b",\"wall\":", Plain::string);
-        json.expect(b"}")?;
+        let wall = optional!(json, ",\"wall\":", Plain::string);
+        json.expect("}")?;
         json.end()?;
         Some(Self {
             t,
@@ -125,23 +125,23 @@ impl Body for SampleBody {
 impl Body for StepBody {
     fn of_plain(mut json: Plain<'_>) -> Option<Self> {
         let json = &mut json;
-        json.expect(b"{\"step\":")?;
+        json.expect("{\"step\":")?;
         let step = json.whole()?;
-        json.expect(b",\"time\":")?;
+        json.expect(",\"time\":")?;
         let time = json.number()?;
-        json.expect(b",\"u\":")?;
+        json.expect(",\"u\":")?;
         let u = json.number()?;
-        json.expect(b",\"x\":")?;
+        json.expect(",\"x\":")?;
         let x = json.number()?;
-        let v = optional!(json, b",\"v\":", Plain::number);
-        let a = optional!(json, b",\"a\":", Plain::number);
-        json.expect(b",\"r\":")?;
+        let v = optional!(json, ",\"v\":", Plain::number);
+        let a = optional!(json, ",\"a\":", Plain::number);
+        json.expect(",\"r\":")?;
         let r = json.number()?;
-        let e = optional!(json, b",\"e\":", Plain::number);
-        let axes = optional!(json, b",\"axes\":", |json: &mut Plain<'_>| json
+        let e = optional!(json, ",\"e\":", Plain::number);
+        let axes = optional!(json, ",\"axes\":", |json: &mut Plain<'_>| json
             .list(1, axis))
         .unwrap_or_default();
-        json.expect(b"}")?;
+        json.expect("}")?;
         json.end()?;
         Some(Self {
             step,
@@ -158,14 +158,14 @@ impl Body for StepBody {
 }
 
 fn axis(json: &mut Plain<'_>) -> Option<AxisBody> {
-    let mut number = |name: &[u8]| {
+    let mut number = |name: &str| {
         json.expect(name)?;
         json.number()
     };
-    let (u, x) = (number(b"{\"u\":")?, number(b",\"x\":")?);
-    let (v, a) = (number(b",\"v\":")?, number(b",\"a\":")?);
-    let r = number(b",\"r\":")?;
-    json.expect(b"}")?;
+    let (u, x) = (number("{\"u\":")?, number(",\"x\":")?);
+    let (v, a) = (number(",\"v\":")?, number(",\"a\":")?);
+    let r = number(",\"r\":")?;
+    json.expect("}")?;
     Some(AxisBody { u, x, v, a, r })
 }
 
@@ -182,7 +182,7 @@ mod tests {
 
     /// The plain reader gives what the general one gives, for the body and for each body without one of its fields.
     fn same<T: Body + Serialize + Debug + PartialEq>(whole: &Value) {
-        let plain = |json: &str| T::of_plain(Plain::of(json.as_bytes()));
+        let plain = |json: &str| T::of_plain(Plain::of(json));
         let read: T = serde_json::from_value(whole.clone()).unwrap();
         let json = serde_json::to_string(&read).unwrap();
         assert_eq!(plain(&json), Some(read), "{json}");
@@ -216,7 +216,7 @@ mod tests {
         let without_speed = json!({"n": 1, "t": 0.5, "to": [], "speed": null, "rate": 1.0});
         let read: IntentBody = serde_json::from_value(without_speed.clone()).unwrap();
         let json = without_speed.to_string();
-        assert_eq!(IntentBody::of_plain(Plain::of(json.as_bytes())), Some(read));
+        assert_eq!(IntentBody::of_plain(Plain::of(&json)), Some(read));
         same::<SampleBody>(&json!({
             "t": 1.0, "x": [1e-3], "r": [10.0], "raw": ["X 1\\n", "\"R\""], "moved": [0.5, 0.9],
             "wall": "08:00"
