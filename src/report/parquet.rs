@@ -163,7 +163,7 @@ fn pages_of(
 }
 
 thread_local! {
-    /// A compressor is made once for each thread: its memory, and its questions to the processor, take as long as a page.
+    /// One for each thread: a new compressor asks the processor for its features, which takes long in a virtual machine.
     static PAGES: RefCell<PageCompressor> = RefCell::default();
 }
 
