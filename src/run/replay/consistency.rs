@@ -228,7 +228,7 @@ struct TargetNumber {
     n: u64,
 }
 
-impl TargetNumber {
+impl Body for TargetNumber {
     fn of_plain(mut json: Plain<'_>) -> Option<Self> {
         json.expect("{\"n\":")?;
         json.whole().map(|n| Self { n })
@@ -257,9 +257,7 @@ fn counts_on(logged: &LoggedRun) -> Result<(), Contradiction> {
     let mut time = logged.rigs.first().map_or(0.0, |rig| rig.t);
     for line in &logged.lines {
         if line.kind == EntryKind::Intent {
-            let TargetNumber { n } = line
-                .read_by(TargetNumber::of_plain)
-                .map_err(|fault| at(line, fault.to_string()))?;
+            let TargetNumber { n } = body(line).map_err(|fault| at(line, fault.to_string()))?;
             targets += 1;
             if n != targets {
                 return Err(at(line, format!("it is target {targets}, but states {n}")));
