@@ -307,6 +307,22 @@ impl<'a> Checker<'a> {
         })
     }
 
+    /// Does `work` once for this key of one of its maps.
+    pub fn once_in<K: Ord, T: Clone>(
+        &mut self,
+        known: fn(&mut Self) -> &mut BTreeMap<K, Traced<T>>,
+        key: K,
+        work: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        if let Some(traced) = known(self).get(&key).cloned() {
+            return self.read_again(&traced);
+        }
+        let traced = self.traced(work);
+        let value = traced.value.clone();
+        known(self).insert(key, traced);
+        value
+    }
+
     /// Begins with the values of the check before, of the same plan without warnings.
     pub fn begin_with(&mut self, fixed: FixedValues) {
         let FixedValues {

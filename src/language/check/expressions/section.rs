@@ -106,13 +106,11 @@ impl<'a> Checker<'a> {
 
     /// A shape with its dimensions, each of which is known before the run. It is evaluated once, wherever it is read.
     pub fn section(&mut self, written: &'a Expr, context: Context) -> Option<Section> {
-        if let Some(known) = self.sections.get(&written.span).cloned() {
-            return self.read_again(&known);
-        }
-        let section = self.traced(|checker| checker.new_section(written, context));
-        let value = section.value;
-        self.sections.insert(written.span, section);
-        value
+        self.once_in(
+            |checker| &mut checker.sections,
+            written.span,
+            |checker| checker.new_section(written, context),
+        )
     }
 
     fn new_section(&mut self, written: &'a Expr, context: Context) -> Option<Section> {

@@ -58,24 +58,22 @@ pub fn is_frame(checker: &Checker, block: usize) -> bool {
 
 /// The frame; an error in it is reported once, however often it is requested.
 pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
-    if let Some(known) = checker.frames.get(&block).cloned() {
-        return checker.read_again(&known);
-    }
-    // There is no frame until it is known: a storey that reads the mass of its own frame gets no value.
-    checker.frames.insert(block, Traced::unknown());
-    let traced = checker.traced(|checker| {
-        report_once(checker, block)?;
-        let frame = if checker.field(block, fields::STOREYS.name).is_some() {
-            Frame::of_storeys(storeys(checker, block)?)
-        } else {
-            let frame = matrices(checker, block)?;
-            with_elements(checker, block, frame)?
-        };
-        Some(Rc::new(frame))
-    });
-    let frame = traced.value.clone();
-    checker.frames.insert(block, traced);
-    frame
+    checker.once_in(
+        |checker| &mut checker.frames,
+        block,
+        |checker| {
+            // There is no frame until it is known: a storey that reads the mass of its own frame gets no value.
+            checker.frames.insert(block, Traced::unknown());
+            report_once(checker, block)?;
+            let frame = if checker.field(block, fields::STOREYS.name).is_some() {
+                Frame::of_storeys(storeys(checker, block)?)
+            } else {
+                let frame = matrices(checker, block)?;
+                with_elements(checker, block, frame)?
+            };
+            Some(Rc::new(frame))
+        },
+    )
 }
 
 struct SpecimenTwice<'a> {

@@ -487,13 +487,11 @@ fn help_without(name: &str, behaviour: &Behaviour) -> &'static str {
 
 /// The model; an error in it is reported once, however often it is requested.
 pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Rc<Behaviour>> {
-    if let Some(known) = checker.behaviours.get(&block).cloned() {
-        return checker.read_again(&known);
-    }
-    let traced = checker.traced(|checker| new_behaviour(checker, block, requested_at).map(Rc::new));
-    let behaviour = traced.value.clone();
-    checker.behaviours.insert(block, traced);
-    behaviour
+    checker.once_in(
+        |checker| &mut checker.behaviours,
+        block,
+        |checker| new_behaviour(checker, block, requested_at).map(Rc::new),
+    )
 }
 
 fn new_behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Behaviour> {
