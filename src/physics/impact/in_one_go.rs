@@ -1,6 +1,11 @@
 //! An impact from start to end, on an ideal rig or along a recorded path. In: the inputs, a specimen or readings. Out: the ends of its
 //! steps, bit for bit those of [`ImpactSolver`]. Where it can, it keeps all numbers between two steps in registers.
 
+#![allow(
+    clippy::inline_always,
+    reason = "a part of the loop over the steps, which computes what its parts read"
+)]
+
 use super::energy::{Energies, kinetic_energy};
 use super::solver::impact_state;
 use super::step::{Also, BetweenSteps, end_step};
@@ -37,44 +42,87 @@ pub(crate) fn from_start<K: Sink>(
     mut solver: ImpactSolver,
     until: Option<Until>,
     steps: u64,
-    mut read: impl FnMut([f64; 2]) -> [f64; 2],
+    read: impl FnMut([f64; 2]) -> [f64; 2],
     sink: &mut K,
 ) -> ImpactState {
-    let exact = input.integrator == Integrator::Tangent
-        && input.noise == DeclaredNoise::NONE
-        && !input.i_modification;
-    let stops = match until {
-        None | Some(Until::Duration) => Some(false),
-        Some(Until::StrikerStop) => Some(true),
-        Some(Until::Rebound | Until::Drift(_)) => None,
+    let mut caller = Uninterrupted { read, sink };
+    if let Some((_, last)) = steps_in_one_go(input, &solver, until, steps, &mut caller) {
+        return last;
+    }
+    let Uninterrupted { mut read, sink } = caller;
+    let read = |solver: &mut ImpactSolver| {
+        let mut velocity = [0.0];
+        solver.predicted_velocity(&mut velocity);
+        read([solver.predict(), velocity[0]])
     };
-    let start = solver.state();
-    match (input.law, stops.filter(|_| exact)) {
-        (ContactLaw::Rigid, Some(stops)) => run::<_, false>(input, start, read, stops, steps, sink),
-        (ContactLaw::Limit { .. }, Some(stops)) => {
-            run::<_, true>(input, start, read, stops, steps, sink)
-        }
-        _ => {
-            let read = |solver: &mut ImpactSolver| {
-                let mut velocity = [0.0];
-                solver.predicted_velocity(&mut velocity);
-                read([solver.predict(), velocity[0]])
-            };
-            solver.run(until, steps, read, sink);
-            *solver.state()
-        }
+    solver.run(until, steps, read, sink);
+    *solver.state()
+}
+
+/// Reads at the targets of an impact, receives the ends of its steps, and may end it.
+pub trait Caller {
+    /// Displacement \[m\] and force \[N\] at a target \[m\] that has a predicted velocity \[m/s\]. None: the impact ends before this step.
+    fn read(&mut self, target: [f64; 2]) -> Option<[f64; 2]>;
+
+    /// Takes the end of a step; `over`: the run ends with it before its duration. False: the impact ends with it.
+    fn end(&mut self, structure: &State<f64>, state: &ImpactState, over: bool) -> bool;
+}
+
+/// A caller that ends no impact.
+struct Uninterrupted<'a, R, K> {
+    read: R,
+    sink: &'a mut K,
+}
+
+impl<R: FnMut([f64; 2]) -> [f64; 2], K: Sink> Caller for Uninterrupted<'_, R, K> {
+    #[inline(always)]
+    fn read(&mut self, target: [f64; 2]) -> Option<[f64; 2]> {
+        Some((self.read)(target))
+    }
+
+    #[inline(always)]
+    fn end(&mut self, structure: &State<f64>, state: &ImpactState, over: bool) -> bool {
+        self.sink.push(structure, state, over);
+        true
     }
 }
 
-/// In tangent form with exact readings, under the rigid law or one that is `LIMITED`.
-fn run<K: Sink, const LIMITED: bool>(
+/// All steps of an impact with exact readings from its start, where `solver` is and stays, `steps` steps at most. The numbers between two
+/// steps are in registers, and their bits are those of the solver. Gives the end of the last step. None, with no reading, if the
+/// integrator, the contact law or the end of the run needs the solver.
+pub fn steps_in_one_go<C: Caller>(
+    input: &ImpactInput,
+    solver: &ImpactSolver,
+    until: Option<Until>,
+    steps: u64,
+    caller: &mut C,
+) -> Option<(State<f64>, ImpactState)> {
+    let ends_at_stop = match until {
+        None | Some(Until::Duration) => false,
+        Some(Until::StrikerStop) => true,
+        Some(Until::Rebound | Until::Drift(_)) => return None,
+    };
+    let exact = input.integrator == Integrator::Tangent
+        && input.noise == DeclaredNoise::NONE
+        && !input.i_modification;
+    let start = solver.state();
+    let last = match input.law {
+        _ if !exact => return None,
+        ContactLaw::Rigid => run::<_, false>(input, start, ends_at_stop, steps, caller),
+        ContactLaw::Limit { .. } => run::<_, true>(input, start, ends_at_stop, steps, caller),
+        _ => return None,
+    };
+    Some(last.unwrap_or_else(|| (solver.structure().clone(), *start)))
+}
+
+/// In tangent form with exact readings, under the rigid law or one that is `LIMITED`. None without a step.
+fn run<C: Caller, const LIMITED: bool>(
     input: &ImpactInput,
     start: &ImpactState,
-    mut read: impl FnMut([f64; 2]) -> [f64; 2],
     ends_at_stop: bool,
     steps: u64,
-    sink: &mut K,
-) -> ImpactState {
+    caller: &mut C,
+) -> Option<(State<f64>, ImpactState)> {
     let mut inputs = input.step_inputs();
     inputs.striker.energy = start.input;
     let also = Also {
@@ -99,12 +147,15 @@ fn run<K: Sink, const LIMITED: bool>(
         measured: start.target,
     };
     for step in 1..=steps {
-        let mut measured = end.measured;
+        let mut read = None;
         let (after, marks) = end_step::<f64, LIMITED>(&inputs, &now, also, |_, target| {
-            let [displacement, force] = read(target);
-            measured = displacement;
+            read = caller.read(target);
+            let [displacement, force] = read.unwrap_or(target);
             [force, displacement - end.measured]
         });
+        let Some([measured, _]) = read else {
+            break;
+        };
         now = after;
         let begins = end.state == StepState::Free && marks.state != StepState::Free;
         end = End {
@@ -115,15 +166,11 @@ fn run<K: Sink, const LIMITED: bool>(
         };
         let over = ends_at_stop && marks.over;
         let (structure, state) = end.states(input, &now);
-        sink.push(&structure, &state, over);
-        if over {
+        if !caller.end(&structure, &state, over) || over {
             break;
         }
     }
-    if end.step == 0 {
-        return *start;
-    }
-    end.states(input, &now).1
+    (end.step > 0).then(|| end.states(input, &now))
 }
 
 /// The last step.

@@ -11,7 +11,7 @@ pub mod summary;
 mod until;
 
 pub(crate) use in_one_go::from_start;
-pub use in_one_go::simulate;
+pub use in_one_go::{Caller, simulate, steps_in_one_go};
 pub use solver::{FrameImpactSolver, ImpactSolver};
 pub use until::Until;
 

@@ -2,6 +2,8 @@
 //! energies. In: a structure, a striker, readings. Out: targets, and the end of each step. It commands no rig: the caller moves the
 //! specimen to the targets and returns the readings.
 
+use std::any::Any;
+
 use super::energy::{Energies, kinetic_energy};
 use super::{ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink, Until};
 use crate::contact::state::StepState;
@@ -422,6 +424,12 @@ impl<V: HasTangents> ImpactSolver<V> {
     #[must_use]
     pub const fn struck(&self) -> usize {
         self.striker.struck
+    }
+
+    /// This solver, if it has one degree of freedom that is no frame.
+    #[must_use]
+    pub fn of_one_degree(&self) -> Option<&ImpactSolver> {
+        (self as &dyn Any).downcast_ref()
     }
 
     /// The whole structure there.

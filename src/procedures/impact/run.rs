@@ -10,14 +10,19 @@ use super::uncertainty::{RecordedRun, UncertaintyInputs};
 use crate::procedures::frame::results::{drifted_to, observe_drift};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
-use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::step_loop::{
+    self, AxesState, Balance, IdealRun, StepEnd, Stepped,
+};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{Keep, Performed};
 use psd_physics::impact::summary::ImpactEnding;
-use psd_physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
+use psd_physics::impact::{
+    Caller, FrameImpactSolver, ImpactInput, ImpactSetup, ImpactSolver, ImpactState, steps_in_one_go,
+};
+use psd_physics::integrator::state::State;
 use psd_physics::integrator::tangents::HasTangents;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
@@ -264,11 +269,14 @@ fn take_steps<V: HasTangents>(
             Ok((
                 Struck {
                     solver,
+                    input: &setting.input,
                     until,
-                    before,
-                    steps,
-                    floors,
-                    summary,
+                    kept: Kept {
+                        before,
+                        steps,
+                        floors,
+                        summary,
+                    },
                 },
                 stiffer,
             ))
@@ -279,18 +287,145 @@ fn take_steps<V: HasTangents>(
 /// The structure in motion, with its striker.
 struct Struck<'a, V: HasTangents> {
     solver: ImpactSolver<V>,
+    input: &'a ImpactInput,
     until: Until,
+    kept: Kept<'a>,
+}
+
+/// The steps of the structure and the striker so far.
+struct Kept<'a> {
     before: u64,
     steps: &'a mut ImpactSteps,
     floors: &'a mut Vec<FloorStep>,
     summary: &'a mut StruckSummary,
 }
 
-impl<V: HasTangents> Stepped for Struck<'_, V> {
+impl Kept<'_> {
+    fn sum_up<V: HasTangents>(&mut self, structure: &State<V>, state: &ImpactState) -> Balance {
+        self.summary.push(structure, state);
+        Balance {
+            error: state.energies.error,
+            input: state.input,
+        }
+    }
+
+    fn keep<V: HasTangents>(
+        &mut self,
+        structure: &State<V>,
+        state: &ImpactState,
+        axes: &[Tracking],
+        wall_time: f64,
+    ) {
+        self.steps.push(&ImpactStep {
+            step: state.step,
+            time: state.time,
+            wall_time,
+            state: state.state,
+            command: state.target,
+            computed: state.displacement,
+            displacement: state.measured_displacement,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+            indentation: state.indentation,
+            energies: state.energies,
+            tracking: Tracking::together(axes),
+        });
+        if let Some(floors) = self.summary.floors() {
+            self.floors.push(FloorStep {
+                floors: FloorMotion::of_state(structure, axes),
+                storey_energy: floors.storey_energy().to_vec(),
+            });
+        }
+    }
+}
+
+/// The end of a step.
+struct End<'a, 'kept, V> {
+    structure: &'a State<V>,
+    state: &'a ImpactState,
+    kept: &'a mut Kept<'kept>,
+}
+
+impl<V: HasTangents> StepEnd for End<'_, '_, V> {
+    fn axes(&self) -> AxesState<'_> {
+        AxesState::of(self.structure)
+    }
+
+    fn sum_up(&mut self) -> Balance {
+        self.kept.sum_up(self.structure, self.state)
+    }
+
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        self.kept.keep(self.structure, self.state, axes, wall_time);
+    }
+
+    fn is_struck(&self) -> bool {
+        self.state.contact_force > 0.0
+    }
+
+    fn before(&self) -> u64 {
+        self.kept.before
+    }
+}
+
+/// Reads on an ideal rig, and ends the steps there.
+struct IdealCaller<'a, 'kept, 'run, 'rig> {
+    kept: &'a mut Kept<'kept>,
+    run: &'a mut IdealRun<'run, 'rig>,
+}
+
+impl Caller for IdealCaller<'_, '_, '_, '_> {
+    #[inline]
+    fn read(&mut self, [target, _]: [f64; 2]) -> Option<[f64; 2]> {
+        self.run.target().copy_from_slice(&[target]);
+        let Reading {
+            displacement,
+            force,
+            ..
+        } = self.run.read()?;
+        Some([displacement[0], force[0]])
+    }
+
+    #[inline]
+    fn end(&mut self, structure: &State<f64>, state: &ImpactState, _: bool) -> bool {
+        self.run.end(&mut End {
+            structure,
+            state,
+            kept: self.kept,
+        })
+    }
+}
+
+impl<V: HasTangents> StepEnd for Struck<'_, V> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.structure())
     }
 
+    fn sum_up(&mut self) -> Balance {
+        let (structure, state) = (self.solver.structure(), self.solver.state());
+        self.kept.sum_up(structure, state)
+    }
+
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        let (structure, state) = (self.solver.structure(), self.solver.state());
+        self.kept.keep(structure, state, axes, wall_time);
+    }
+
+    fn is_struck(&self) -> bool {
+        self.solver.state().contact_force > 0.0
+    }
+
+    fn before(&self) -> u64 {
+        self.kept.before
+    }
+}
+
+impl<V: HasTangents> Stepped for Struck<'_, V> {
     fn predict(&mut self, target: &mut [f64]) {
         target.copy_from_slice(V::slice_of(&self.solver.predict()));
     }
@@ -328,47 +463,33 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         );
     }
 
-    fn sum_up(&mut self) -> Balance {
-        let state = self.solver.state();
-        self.summary.push(self.solver.structure(), state);
-        Balance {
-            error: state.energies.error,
-            input: state.input,
-        }
-    }
-
-    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
-        let state = self.solver.state();
-        self.steps.push(&ImpactStep {
-            step: state.step,
-            time: state.time,
-            wall_time,
-            state: state.state,
-            command: state.target,
-            computed: state.displacement,
-            displacement: state.measured_displacement,
-            velocity: state.velocity,
-            acceleration: state.acceleration,
-            restoring_force: state.restoring_force,
-            contact_force: state.contact_force,
-            striker_displacement: state.striker_displacement,
-            striker_velocity: state.striker_velocity,
-            tangent_stiffness: state.tangent_stiffness,
-            indentation: state.indentation,
-            energies: state.energies,
-            tracking: Tracking::together(axes),
+    fn in_one_go(&mut self, count: u64, run: &mut IdealRun<'_, '_>) -> bool {
+        let Self {
+            solver,
+            input,
+            until,
+            kept,
+        } = self;
+        let Some(solver) = solver.of_one_degree() else {
+            return false;
+        };
+        let mut caller = IdealCaller { kept, run };
+        let Some((structure, state)) =
+            steps_in_one_go(input, solver, Some(*until), count, &mut caller)
+        else {
+            return false;
+        };
+        run.keep_last(&mut End {
+            structure: &structure,
+            state: &state,
+            kept,
         });
-        if let Some(floors) = self.summary.floors() {
-            self.floors.push(FloorStep {
-                floors: FloorMotion::of_state(self.solver.structure(), axes),
-                storey_energy: floors.storey_energy().to_vec(),
-            });
-        }
+        true
     }
 
     fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64) {
         let struck = self.solver.struck();
-        let Some(last) = self.steps.last() else {
+        let Some(last) = self.kept.steps.last() else {
             return;
         };
         let time = last.time + time_step;
@@ -382,12 +503,13 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             restoring_force: reading.force[struck],
             ..last
         };
-        self.steps.push(&step);
+        self.kept.steps.push(&step);
         let gravity_force = self.solver.gravity_force(V::view_of(&reading.displacement));
         let elements = &self.solver.structure().elements;
-        self.summary
+        self.kept
+            .summary
             .moved_to(struck, reading, elements, &gravity_force, time);
-        if let Some(last) = self.floors.last() {
+        if let Some(last) = self.kept.floors.last() {
             let floors = last.floors.cut_off(
                 time,
                 target,
@@ -397,19 +519,11 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
                 elements,
             );
             let storey_energy = last.storey_energy.clone();
-            self.floors.push(FloorStep {
+            self.kept.floors.push(FloorStep {
                 floors,
                 storey_energy,
             });
         }
-    }
-
-    fn is_struck(&self) -> bool {
-        self.solver.state().contact_force > 0.0
-    }
-
-    fn before(&self) -> u64 {
-        self.before
     }
 
     fn over(&self) -> bool {

@@ -6,7 +6,7 @@ use super::setting::Setting;
 use crate::procedures::frame::results::drifted_to;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{Start, not_stepped};
-use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, StepEnd, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -99,11 +99,42 @@ struct Shaken<'a> {
     summary: &'a mut ShakeSummary,
 }
 
-impl Stepped for Shaken<'_> {
+impl StepEnd for Shaken<'_> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.state())
     }
 
+    fn sum_up(&mut self) -> Balance {
+        let state = self.solver.state();
+        self.summary.push(state);
+        // The input energy is 0 at the start: until it is larger, the reference is the energy that the ground motion can put in.
+        let input = self
+            .summary
+            .largest_energy()
+            .max(self.setting.ground_energy);
+        Balance {
+            error: state.energies.error,
+            input,
+        }
+    }
+
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        let state = self.solver.state();
+        self.history.steps.push(ShakeStep {
+            step: state.step,
+            wall_time,
+            ground_acceleration: self.setting.ground_at(self.ground, state.step),
+            floors: FloorMotion::of_state(state, axes),
+            energies: state.energies,
+        });
+    }
+
+    fn is_struck(&self) -> bool {
+        false
+    }
+}
+
+impl Stepped for Shaken<'_> {
     fn predict(&mut self, target: &mut [f64]) {
         let Self {
             setting,
@@ -147,31 +178,6 @@ impl Stepped for Shaken<'_> {
         self.solver.complete(&reading.displacement, &reading.force);
     }
 
-    fn sum_up(&mut self) -> Balance {
-        let state = self.solver.state();
-        self.summary.push(state);
-        // The input energy is 0 at the start: until it is larger, the reference is the energy that the ground motion can put in.
-        let input = self
-            .summary
-            .largest_energy()
-            .max(self.setting.ground_energy);
-        Balance {
-            error: state.energies.error,
-            input,
-        }
-    }
-
-    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
-        let state = self.solver.state();
-        self.history.steps.push(ShakeStep {
-            step: state.step,
-            wall_time,
-            ground_acceleration: self.setting.ground_at(self.ground, state.step),
-            floors: FloorMotion::of_state(state, axes),
-            energies: state.energies,
-        });
-    }
-
     fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64) {
         let Some(last) = self.history.steps.last() else {
             return;
@@ -198,10 +204,6 @@ impl Stepped for Shaken<'_> {
         let elements = &self.solver.state().elements;
         self.summary
             .cut_off(&reading.displacement, elements, base_shear);
-    }
-
-    fn is_struck(&self) -> bool {
-        false
     }
 
     fn over(&self) -> bool {

@@ -41,11 +41,27 @@ impl Balance {
     }
 }
 
-/// Computes the steps of a structure, and keeps them.
-pub(crate) trait Stepped {
-    /// The end of the last step.
+/// The end of a step, which is kept with those before it.
+pub(crate) trait StepEnd {
     fn axes(&self) -> AxesState<'_>;
 
+    /// Adds it to the results.
+    fn sum_up(&mut self) -> Balance;
+
+    /// Keeps it, with the tracking of each axis so far and the rig time \[s\].
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64);
+
+    /// Whether a contact force acted in this step.
+    fn is_struck(&self) -> bool;
+
+    /// Steps of the procedure done before these.
+    fn before(&self) -> u64 {
+        0
+    }
+}
+
+/// Computes the steps of a structure. It is at the end of the last step.
+pub(crate) trait Stepped: StepEnd {
     /// Sets the target of each axis at the end of the next step \[m\]. Within one step it is always the same.
     fn predict(&mut self, target: &mut [f64]);
 
@@ -64,23 +80,15 @@ pub(crate) trait Stepped {
     /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
 
-    /// Adds the end of a step to the results.
-    fn sum_up(&mut self) -> Balance;
-
-    /// Keeps the end of a step, with the tracking of each axis so far and the rig time \[s\].
-    fn keep(&mut self, axes: &[Tracking], wall_time: f64);
+    /// Takes `count` steps of a run on an ideal rig from its start, if it can take them without a return after each one. False, with no
+    /// step: it cannot.
+    fn in_one_go(&mut self, _count: u64, _run: &mut IdealRun<'_, '_>) -> bool {
+        false
+    }
 
     /// Keeps the reading that exceeded a limit on the way to the target: the step after the last one kept, of this length \[s\], has not
     /// ended.
     fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64);
-
-    /// Whether a contact force acted in the last step.
-    fn is_struck(&self) -> bool;
-
-    /// Steps of the procedure done before these.
-    fn before(&self) -> u64 {
-        0
-    }
 
     /// Whether the run ends before all steps are done.
     fn over(&self) -> bool;
@@ -145,20 +153,27 @@ pub(crate) fn run<S: Stepped>(
     };
     let ended = match ideal {
         Some(ideal) => taken.all_ideally(steps, ideal, followed, session),
-        None => taken.all(steps, plan, followed, session),
+        None => {
+            let ended = taken.all(steps, plan, followed, session);
+            if !keeps_steps {
+                let StepsTaken {
+                    stepped,
+                    monitors,
+                    wall_time,
+                    ..
+                } = &mut taken;
+                stepped.keep(monitors.tracking(), *wall_time);
+            }
+            ended
+        }
     };
     let StepsTaken {
         mut stepped,
-        monitors,
         target,
         reading,
-        wall_time,
         is_cut_off,
         ..
     } = taken;
-    if !keeps_steps {
-        stepped.keep(monitors.tracking(), wall_time);
-    }
     if is_cut_off {
         stepped.read_elements(&session.elements_read());
         stepped.cut_off(&target, &reading, steps.time_step, session.guard.time());
@@ -251,23 +266,6 @@ impl<S: Stepped> StepsTaken<S> {
         followed: &mut TrackingSummary,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let mut assessed = None;
-        let ended = self.each_ideally(steps, ideal, &mut assessed, session);
-        // The reference of the errors never falls: the last one shows whether any was above zero.
-        if let Some(input) = assessed {
-            followed.assess(self.monitors.tracking(), input, session);
-        }
-        ended
-    }
-
-    /// `assessed`: the reference of the errors at the last completed step \[J\].
-    fn each_ideally(
-        &mut self,
-        steps: &Steps,
-        ideal: IdealSteps,
-        assessed: &mut Option<f64>,
-        session: &mut Session<'_>,
-    ) -> Result<(), Stop> {
         let Self {
             stepped,
             stiffer,
@@ -278,47 +276,32 @@ impl<S: Stepped> StepsTaken<S> {
             wall_time,
             ..
         } = self;
-        let watches = stiffer.watches();
-        let tracking = Tracking::together(monitors.tracking());
-        let mut report = session.is_followed().then(StepReport::default);
-        let mut struck = false;
-        for _ in 0..steps.count {
-            stepped.predict(target);
-            let ended = session.step_ideally(ideal, target, reading)?;
-            stepped.complete(reading);
-            let balance = stepped.sum_up();
-            *wall_time = reading.time;
-            if *keeps_steps {
-                stepped.keep(monitors.tracking(), *wall_time);
-            }
-            if let Some(ended) = ended {
-                return Err(ended.fault.into());
-            }
-            if watches {
-                let before = std::mem::replace(&mut struck, stepped.is_struck());
-                stiffer.take(reading, &[], before || struck, session);
-            }
-            *assessed = Some(balance.input);
-            let energy_error = balance.relative_error();
-            session.guard.check_energy_error(energy_error)?;
-            let (state, before) = (stepped.axes(), stepped.before());
-            if let Some(report) = &mut report {
-                let errors = Errors {
-                    energy_error,
-                    tracking,
-                    tracking_energy_error: tracking.share_of(balance.input),
-                };
-                errors.report(&state, report);
-                report.step += before;
-                session.step_done(report)?;
-            } else {
-                session.step_passed(state.step + before);
-            }
-            if stepped.over() {
-                break;
-            }
+        let mut run = IdealRun {
+            ideal,
+            watched: Some(stiffer).filter(|stiffer| stiffer.watches()),
+            axes: monitors.tracking(),
+            tracking: Tracking::together(monitors.tracking()),
+            keeps_steps: *keeps_steps,
+            target,
+            reading,
+            wall_time: *wall_time,
+            struck: false,
+            report: session.is_followed().then(StepReport::default),
+            input: None,
+            beyond: None,
+            stop: None,
+            session,
+        };
+        if !stepped.in_one_go(steps.count, &mut run) {
+            run.step_by_step(stepped, steps.count);
+            run.keep_last(stepped);
         }
-        Ok(())
+        let IdealRun { input, stop, .. } = run;
+        // The reference of the errors never falls: the last one shows whether any was above zero.
+        if let Some(input) = input {
+            followed.assess(monitors.tracking(), input, session);
+        }
+        stop.map_or(Ok(()), Err)
     }
 
     /// Moves to the next target and reads there; the stop of a reading that exceeded a limit, there or on the way.
@@ -378,6 +361,117 @@ impl<S: Stepped> StepsTaken<S> {
             stepped.keep(monitors.tracking(), self.wall_time);
         }
         balance
+    }
+}
+
+/// The steps of a run on an ideal rig.
+pub(crate) struct IdealRun<'a, 'rig> {
+    ideal: IdealSteps,
+    /// If a reading can show that a specimen is stiffer than its model.
+    watched: Option<&'a mut StifferSprings>,
+    /// The tracking of each axis, which stays as it is, and of all.
+    axes: &'a [Tracking],
+    tracking: Tracking,
+    keeps_steps: bool,
+    /// \[m\]
+    target: &'a mut [f64],
+    reading: &'a mut Reading,
+    /// Rig time at the end of the last step \[s\].
+    wall_time: f64,
+    /// Whether a contact force acted in the last step.
+    struck: bool,
+    /// None if the observer does not follow the steps.
+    report: Option<StepReport>,
+    /// The reference of the errors at the last completed step \[J\].
+    input: Option<f64>,
+    /// The limit that the reading of the step in progress exceeded.
+    beyond: Option<Stop>,
+    /// Why the run has ended before its duration.
+    stop: Option<Stop>,
+    session: &'a mut Session<'rig>,
+}
+
+impl IdealRun<'_, '_> {
+    /// The target of each axis at the end of the next step \[m\], to be set before [`Self::read`].
+    pub(crate) const fn target(&mut self) -> &mut [f64] {
+        self.target
+    }
+
+    /// Moves to the target and reads there. None: the run ends before this step.
+    #[inline]
+    pub(crate) fn read(&mut self) -> Option<&Reading> {
+        match self
+            .session
+            .step_ideally(self.ideal, self.target, self.reading)
+        {
+            Ok(None) => Some(self.reading),
+            Ok(Some(ended)) => {
+                self.beyond = Some(ended.fault.into());
+                Some(self.reading)
+            }
+            Err(stop) => {
+                self.stop = Some(stop);
+                None
+            }
+        }
+    }
+
+    /// Takes the end of a step. False: the run ends with it.
+    #[inline]
+    pub(crate) fn end(&mut self, end: &mut impl StepEnd) -> bool {
+        let balance = end.sum_up();
+        self.wall_time = self.reading.time;
+        if self.keeps_steps {
+            end.keep(self.axes, self.wall_time);
+        }
+        if self.beyond.is_some() {
+            self.stop = self.beyond.take();
+            return false;
+        }
+        if let Some(stiffer) = &mut self.watched {
+            let before = std::mem::replace(&mut self.struck, end.is_struck());
+            stiffer.take(self.reading, &[], before || self.struck, self.session);
+        }
+        self.input = Some(balance.input);
+        let energy_error = balance.relative_error();
+        let checked = self.session.guard.check_energy_error(energy_error);
+        let ended = checked.map_err(Stop::from).and_then(|()| {
+            let (state, before) = (end.axes(), end.before());
+            let Some(report) = &mut self.report else {
+                self.session.step_passed(state.step + before);
+                return Ok(());
+            };
+            let errors = Errors {
+                energy_error,
+                tracking: self.tracking,
+                tracking_energy_error: self.tracking.share_of(balance.input),
+            };
+            errors.report(&state, report);
+            report.step += before;
+            self.session.step_done(report)
+        });
+        self.stop = ended.err();
+        self.stop.is_none()
+    }
+
+    /// Keeps the end of the last step, of a run that keeps its results alone.
+    pub(crate) fn keep_last(&self, end: &mut impl StepEnd) {
+        if !self.keeps_steps {
+            end.keep(self.axes, self.wall_time);
+        }
+    }
+
+    fn step_by_step(&mut self, stepped: &mut impl Stepped, count: u64) {
+        for _ in 0..count {
+            stepped.predict(self.target);
+            let Some(reading) = self.read() else {
+                break;
+            };
+            stepped.complete(reading);
+            if !self.end(stepped) || stepped.over() {
+                break;
+            }
+        }
     }
 }
 

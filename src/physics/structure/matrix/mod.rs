@@ -13,7 +13,7 @@ pub use band::{RowsError, SymmetricBand};
 pub use factor::{BandFactor, NotPositiveDefinite};
 
 /// One quantity of every degree of freedom.
-pub trait Vector: Clone + Debug + Default + PartialEq {
+pub trait Vector: Clone + Debug + Default + PartialEq + 'static {
     type Matrix: Matrix<Vector = Self>;
     /// The form in which callers pass it: a number, or a slice.
     type View<'a>: Copy + Debug

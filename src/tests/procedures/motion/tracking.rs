@@ -4,7 +4,7 @@
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::Start;
 use crate::procedures::stepping::setting::Steps;
-use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, StepEnd, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::Unwatched;
 use crate::run::session::Session;
@@ -44,11 +44,28 @@ impl Sine {
     }
 }
 
-impl Stepped for &mut Sine {
+impl StepEnd for &mut Sine {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(&self.state)
     }
 
+    fn sum_up(&mut self) -> Balance {
+        Balance {
+            error: 0.0,
+            input: 1.0,
+        }
+    }
+
+    fn keep(&mut self, axes: &[Tracking], _: f64) {
+        self.kept.push(axes.to_vec());
+    }
+
+    fn is_struck(&self) -> bool {
+        false
+    }
+}
+
+impl Stepped for &mut Sine {
     fn predict(&mut self, target: &mut [f64]) {
         let sine = self.angle().sin();
         target.copy_from_slice(&AMPLITUDES.map(|amplitude| amplitude * sine));
@@ -79,22 +96,7 @@ impl Stepped for &mut Sine {
         self.state.restoring_force.clone_from(&reading.force);
     }
 
-    fn sum_up(&mut self) -> Balance {
-        Balance {
-            error: 0.0,
-            input: 1.0,
-        }
-    }
-
-    fn keep(&mut self, axes: &[Tracking], _: f64) {
-        self.kept.push(axes.to_vec());
-    }
-
     fn cut_off(&mut self, _: &[f64], _: &Reading, _: f64, _: f64) {}
-
-    fn is_struck(&self) -> bool {
-        false
-    }
 
     fn over(&self) -> bool {
         false
