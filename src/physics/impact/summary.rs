@@ -234,8 +234,10 @@ pub(crate) struct LastEnd {
     pub contact_force: f64,
     pub indentation: f64,
     pub indentation_energy: f64,
-    /// Over the energy put into the test.
+    /// \[J\]
     pub energy_error: f64,
+    /// The energy put into the test \[J\].
+    pub input: f64,
 }
 
 impl ImpactSummary {
@@ -270,7 +272,11 @@ impl ImpactSummary {
             indentation_energy: last.indentation_energy,
             absorbed_energy: results.absorbed_energy,
             striker_energy: input.striker_energy(),
-            energy_error: last.energy_error,
+            energy_error: if last.input > 0.0 {
+                last.energy_error / last.input
+            } else {
+                0.0
+            },
             still_rising: still_rising(last.velocity, last.displacement >= farthest),
             last_contact_cut: events.stop.is_some() && last.contact_force > 0.0,
         }
@@ -325,11 +331,8 @@ impl SummaryBuilder {
             contact_force: state.contact_force,
             indentation: state.indentation,
             indentation_energy: state.energies.indentation,
-            energy_error: if state.input > 0.0 {
-                state.energies.error / state.input
-            } else {
-                self.last.energy_error
-            },
+            energy_error: state.energies.error,
+            input: state.input,
         };
     }
 

@@ -94,7 +94,7 @@ pub mod histories {
     };
     pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
     pub use crate::procedures::impact::history::{
-        ImpactConstants, ImpactHistory, ImpactStep, ImpactSteps,
+        CollectedSteps, ImpactConstants, ImpactHistory, ImpactStep, ImpactSteps,
     };
     pub use crate::procedures::move_to::history::MoveStep;
     pub use crate::procedures::preload::history::AxialReading;

@@ -28,8 +28,8 @@ use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
-    FloorMotion, FloorStep, History, ImpactConstants, ImpactHistory, ImpactStep, ImpactSteps,
-    NamedResult, StillGrowing, StruckFrame,
+    CollectedSteps, FloorMotion, FloorStep, History, ImpactConstants, ImpactHistory, ImpactStep,
+    ImpactSteps, NamedResult, StillGrowing, StruckFrame,
 };
 use psd_plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use psd_rig::Reading;
@@ -119,7 +119,7 @@ pub(crate) fn strike(
         tracking,
     } = so_far;
     let summary = (!steps.is_empty()).then_some(summary);
-    let mut history = history_of(plan, Some(setting), steps, floors);
+    let mut history = history_of(plan, Some(setting), steps.finish(), floors);
     let impact = summary.as_ref().map(StruckSummary::impact);
     if let Some((summary, impact)) = summary.as_ref().zip(impact) {
         history.ending = summary.ending(&impact, &history);
@@ -220,7 +220,7 @@ fn history_of(
 /// The record of an impact in progress.
 struct ImpactSoFar {
     /// The struck degree of freedom and the striker.
-    steps: ImpactSteps,
+    steps: CollectedSteps,
     /// Every floor of a frame.
     floors: Vec<FloorStep>,
     summary: StruckSummary,
@@ -234,7 +234,7 @@ impl ImpactSoFar {
             .unwrap_or(usize::MAX)
             .min(100_000);
         Self {
-            steps: ImpactSteps::with_capacity(capacity, constants),
+            steps: CollectedSteps::with_capacity(capacity, constants),
             floors: Vec::new(),
             summary,
             tracking: TrackingSummary::default(),
@@ -295,12 +295,13 @@ struct Struck<'a, V: HasTangents> {
 /// The steps of the structure and the striker so far.
 struct Kept<'a> {
     before: u64,
-    steps: &'a mut ImpactSteps,
+    steps: &'a mut CollectedSteps,
     floors: &'a mut Vec<FloorStep>,
     summary: &'a mut StruckSummary,
 }
 
 impl Kept<'_> {
+    #[inline(always)]
     fn sum_up<V: HasTangents>(&mut self, structure: &State<V>, state: &ImpactState) -> Balance {
         self.summary.push(structure, state);
         Balance {
@@ -309,6 +310,7 @@ impl Kept<'_> {
         }
     }
 
+    #[inline(always)]
     fn keep<V: HasTangents>(
         &mut self,
         structure: &State<V>,
@@ -352,22 +354,27 @@ struct End<'a, 'kept, V> {
 }
 
 impl<V: HasTangents> StepEnd for End<'_, '_, V> {
+    #[inline(always)]
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.structure)
     }
 
+    #[inline(always)]
     fn sum_up(&mut self) -> Balance {
         self.kept.sum_up(self.structure, self.state)
     }
 
+    #[inline(always)]
     fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
         self.kept.keep(self.structure, self.state, axes, wall_time);
     }
 
+    #[inline(always)]
     fn is_struck(&self) -> bool {
         self.state.contact_force > 0.0
     }
 
+    #[inline(always)]
     fn before(&self) -> u64 {
         self.kept.before
     }
@@ -380,9 +387,9 @@ struct IdealCaller<'a, 'kept, 'run, 'rig> {
 }
 
 impl Caller for IdealCaller<'_, '_, '_, '_> {
-    #[inline]
+    #[inline(always)]
     fn read(&mut self, [target, _]: [f64; 2]) -> Option<[f64; 2]> {
-        self.run.target().copy_from_slice(&[target]);
+        self.run.target()[0] = target;
         let Reading {
             displacement,
             force,
@@ -391,7 +398,7 @@ impl Caller for IdealCaller<'_, '_, '_, '_> {
         Some([displacement[0], force[0]])
     }
 
-    #[inline]
+    #[inline(always)]
     fn end(&mut self, structure: &State<f64>, state: &ImpactState, _: bool) -> bool {
         self.run.end(&mut End {
             structure,

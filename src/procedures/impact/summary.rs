@@ -29,6 +29,7 @@ struct Growing {
 }
 
 impl Growing {
+    #[inline(always)]
     fn push(&mut self, value: f64) {
         self.is_last = value > self.largest;
         self.largest = self.largest.max(value);
@@ -61,6 +62,7 @@ impl StruckSummary {
     }
 
     /// Adds the end of a step.
+    #[inline(always)]
     pub(crate) fn push<V: Vector>(&mut self, structure: &State<V>, state: &ImpactState) {
         self.impact.push(state);
         self.velocity.push(state.velocity.abs());

@@ -398,7 +398,7 @@ impl IdealRun<'_, '_> {
     }
 
     /// Moves to the target and reads there. None: the run ends before this step.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn read(&mut self) -> Option<&Reading> {
         match self
             .session
@@ -417,7 +417,7 @@ impl IdealRun<'_, '_> {
     }
 
     /// Takes the end of a step. False: the run ends with it.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn end(&mut self, end: &mut impl StepEnd) -> bool {
         let balance = end.sum_up();
         self.wall_time = self.reading.time;
@@ -517,6 +517,7 @@ pub(crate) struct AxesState<'a> {
 }
 
 impl<'a> AxesState<'a> {
+    #[inline(always)]
     pub(crate) fn of<V: Vector>(state: &'a State<V>) -> Self {
         Self {
             step: state.step,

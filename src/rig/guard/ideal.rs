@@ -3,7 +3,7 @@
 
 use super::{Guard, increment, inside};
 use crate::safety::failpoint::{Guarding, on};
-use crate::{LimitedQuantity, OWN_SPEED, Reading, RigFault, UnfinishedStep};
+use crate::{LimitedQuantity, OWN_SPEED, Reading, RigFault, UnfinishedStep, copy};
 use psd_plan::{Interval, Limits};
 
 /// What all steps of a run on an ideal rig have in common.
@@ -85,7 +85,7 @@ impl Guard<'_> {
         self.proposed = None;
         self.going.clear();
         self.speed = Some(steps.speed);
-        self.commanded.copy_from_slice(targets);
+        copy(targets, &mut self.commanded);
         self.settled = true;
         self.last_contact = reading.time;
         Ok(())

@@ -297,6 +297,7 @@ impl<'rig> Guard<'rig> {
     ///
     /// # Errors
     /// The error is outside its limit.
+    #[inline]
     pub fn check_energy_error(&mut self, fraction: f64) -> Result<(), RigFault> {
         if !self.limits.energy_error.is_bounded() || !on(Guarding::EnergyError) {
             return Ok(());

@@ -24,7 +24,7 @@ use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault,
-    UnfinishedStep, WholeSteps,
+    UnfinishedStep, WholeSteps, copy,
 };
 use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::tracking::trajectory::Path;
@@ -387,6 +387,7 @@ impl VirtualRig {
         for (axis, target) in self.axes.iter_mut().zip(targets) {
             travel = travel.max(axis.actuator.jump(*target));
         }
+        copy(targets, &mut self.bent);
         let seconds = travel / speed;
         self.proposed = None;
         self.moved = Some([self.time, seconds]);
@@ -395,12 +396,11 @@ impl VirtualRig {
         if pause > 0.0 {
             self.time += pause;
         }
-        self.bent.copy_from_slice(targets);
         self.springs
             .bend_at_once(targets, &mut self.restoring_force);
         reading.time = self.time;
-        targets.clone_into(&mut reading.displacement);
-        reading.force.clone_from(&self.restoring_force);
+        copy(targets, &mut reading.displacement);
+        copy(&self.restoring_force, &mut reading.force);
         // A cell adds no drift and no noise.
         for force in &mut reading.force {
             *force += 0.0;

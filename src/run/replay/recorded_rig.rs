@@ -37,6 +37,8 @@ pub struct RecordedRig<'rig> {
     pending: Option<(Vec<f64>, Option<f64>, EncodedMove)>,
     /// Difference between the rig time of the run log and that of the rig \[s\].
     pub(super) offset: Option<f64>,
+    /// Whether the rig is simulated and [`Rig::at_once`], as it then stays.
+    does_whole_steps: bool,
 }
 
 impl<'rig> RecordedRig<'rig> {
@@ -61,6 +63,7 @@ impl<'rig> RecordedRig<'rig> {
             about,
             pending: None,
             offset: None,
+            does_whole_steps: false,
         }
     }
 
@@ -312,10 +315,11 @@ impl WholeSteps for RecordedRig<'_> {
             .borrow_mut()
             .add_to_digest("a target", |digest| digest.target(&target))
             .map_err(ended(false))?;
-        let rig = self.rig().map_err(ended(false))?;
-        let rig = rig
-            .at_once()
-            .expect("a recorded rig does whole steps only if its rig does");
+        if self.offset.is_none() {
+            self.rig().map_err(ended(false))?;
+        }
+        let rig = self.live.as_deref_mut().and_then(Rig::at_once);
+        let rig = rig.expect("a recorded rig does whole steps only if its rig does");
         rig.step(targets, speed, pause, reading)?;
         to_log_time(reading, self.offset.unwrap_or(0.0))
             .or_else(|fault| self.failed(Call::Read, fault))
@@ -443,9 +447,11 @@ impl Rig for RecordedRig<'_> {
     }
 
     fn at_once(&mut self) -> Option<&mut dyn WholeSteps> {
-        let is_simulated = self.state.borrow().digests() && !self.answers_from_the_log();
-        let steps = is_simulated && self.live()?.at_once().is_some();
-        steps.then_some(self)
+        if !self.does_whole_steps {
+            let is_simulated = self.state.borrow().digests() && !self.answers_from_the_log();
+            self.does_whole_steps = is_simulated && self.live()?.at_once().is_some();
+        }
+        self.does_whole_steps.then_some(self)
     }
 
     fn is_ideal(&mut self) -> bool {

@@ -53,8 +53,8 @@ pub(super) struct StepsDigest {
     bytes: Vec<u8>,
     /// Where the last of them begins in `bytes`.
     start: usize,
-    /// Whether all its numbers are finite.
-    finite: bool,
+    /// The sum of x − x over its numbers: not zero if one is not finite.
+    finite: f64,
     pub entries: u64,
     pub steps: u64,
     targets: u64,
@@ -73,14 +73,16 @@ impl StepsDigest {
         ];
         self.begin(1, &given, target.to.len());
         self.numbers(target.to);
-        self.numbers(target.speed.as_slice());
+        if let Some(speed) = target.speed {
+            self.number(speed);
+        }
         self.number(target.rate);
         self.numbers(target.encoded.unwrap_or_default());
         if let Some(id) = target.id {
             self.word(id);
         }
         for path in target.path.unwrap_or_default() {
-            self.numbers(&[
+            self.numbers_of([
                 path.from,
                 path.to,
                 path.start_velocity,
@@ -132,13 +134,15 @@ impl StepsDigest {
         ];
         self.begin(4, &given, report.axes.len());
         self.word(report.step);
-        self.numbers(&[report.time, command, displacement, force]);
+        self.numbers_of([report.time, command, displacement, force]);
         for optional in [velocity, acceleration, energy_error] {
-            self.numbers(optional.as_slice());
+            if let Some(number) = optional {
+                self.number(number);
+            }
         }
         for axis in &report.axes[1..] {
             let AxisBody { u, x, v, a, r } = AxisBody::of(axis);
-            self.numbers(&[u, x, v, a, r]);
+            self.numbers_of([u, x, v, a, r]);
         }
         self.end()?;
         self.steps += 1;
@@ -164,8 +168,8 @@ impl StepsDigest {
     }
 
     /// The first word: the kind, a bit for each optional part, and the number of axes.
-    fn begin(&mut self, kind: u64, given: &[bool], axes: usize) {
-        (self.start, self.finite) = (self.bytes.len(), true);
+    fn begin<const N: usize>(&mut self, kind: u64, given: &[bool; N], axes: usize) {
+        (self.start, self.finite) = (self.bytes.len(), 0.0);
         let bits = given
             .iter()
             .rev()
@@ -178,8 +182,15 @@ impl StepsDigest {
     }
 
     fn number(&mut self, number: f64) {
-        self.finite &= number.is_finite();
-        self.word(number.to_bits());
+        self.numbers_of([number]);
+    }
+
+    fn numbers_of<const N: usize>(&mut self, numbers: [f64; N]) {
+        for number in numbers {
+            self.finite += number - number;
+        }
+        self.bytes
+            .extend_from_slice(numbers.map(f64::to_le_bytes).as_flattened());
     }
 
     fn numbers(&mut self, numbers: &[f64]) {
@@ -190,7 +201,7 @@ impl StepsDigest {
 
     /// One of a number that is not finite has no effect.
     fn end(&mut self) -> Result<(), Refusal> {
-        if !self.finite {
+        if self.finite != 0.0 {
             self.bytes.truncate(self.start);
             return Err(Refusal::NotFinite);
         }

@@ -356,11 +356,8 @@ impl Lanes {
             contact_force: motion.contact_force,
             indentation: indented.depth,
             indentation_energy: indented.work,
-            energy_error: if fallen.input > 0.0 {
-                energies.missing(input.striker_energy(), 0.0) / fallen.input
-            } else {
-                0.0
-            },
+            energy_error: energies.missing(input.striker_energy(), 0.0),
+            input: fallen.input,
         };
         let summary = ImpactSummary::new(input, &results, &events, &last);
         let steps = self.clock - begun;

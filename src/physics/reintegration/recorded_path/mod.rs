@@ -208,7 +208,7 @@ impl RecordedPath {
         };
         Stretch {
             ends,
-            end: end.map_or(direction * f64::INFINITY, |end| end.target),
+            end: end.map_or(f64::INFINITY, |end| end.target * direction),
             on_it: begin.unwrap_or(piece.begin),
             displacement_slope,
             force_slope,
@@ -290,7 +290,7 @@ impl RecordedPath {
 struct Stretch {
     /// Number of the reading at its end, the last plus one beyond the end of the piece.
     ends: usize,
-    /// Its position \[m\].
+    /// Its position, times the direction of the motion \[m\].
     end: f64,
     /// The reading at its begin; beyond the begin of the piece, the one there.
     on_it: Reading,
@@ -343,10 +343,10 @@ struct Along {
     /// 1 or −1; 0 for a record without motion.
     direction: f64,
     shift: Shift,
-    /// Positions at which other pieces of its curve begin, in those of the record \[m\].
+    /// Positions at which other pieces of its curve begin, in those of the record, times the direction \[m\].
     from: f64,
     to: f64,
-    /// Where its branch continues an earlier curve \[m\].
+    /// Where its branch continues an earlier curve, times the direction \[m\].
     rejoins: f64,
     /// The last step of the record at which the motion may still be on it, without having missed a loop.
     matches_until: usize,
@@ -414,7 +414,11 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step, which is passed with a velocity \[m/s\].
-    #[inline]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call would take the numbers of its caller out of the registers"
+    )]
+    #[inline(always)]
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let before = self.step;
         self.own_step += 1;
@@ -429,6 +433,7 @@ impl<'a> Retrace<'a> {
         self.pass_anywhere(target, velocity, before)
     }
 
+    #[cold]
     fn pass_anywhere(&mut self, target: f64, velocity: f64, before: usize) -> (f64, f64) {
         let speed = self
             .path
@@ -446,23 +451,25 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "as `Retrace::pass`")]
+    #[inline(always)]
     fn read_along(&mut self, target: f64) -> Option<(f64, f64)> {
         let along = self.along.as_mut()?;
         let Along {
             direction, shift, ..
         } = *along;
         let at = target - shift.position;
-        let leaves = (target - self.position) * direction < 0.0
-            || (target - along.rejoins) * direction > 0.0
-            || (at - along.from) * direction < 0.0
-            || (at - along.to) * direction > 0.0;
+        let (onwards, at_onwards) = (target * direction, at * direction);
+        let leaves = onwards < self.position * direction
+            || onwards > along.rejoins
+            || at_onwards < along.from
+            || at_onwards > along.to;
         if leaves || self.step > along.matches_until {
             return None;
         }
         let piece = &self.path.pieces[self.piece];
         if let Some(stretch) = &mut along.stretch {
-            while (at - stretch.end) * direction >= 0.0 {
+            while at_onwards >= stretch.end {
                 *stretch = self.path.stretch(piece, direction, stretch.ends + 1);
             }
             let Stretch {
@@ -500,17 +507,19 @@ impl<'a> Retrace<'a> {
         let rejoins = next
             .and_then(|next| next.rejoins)
             .map(|left| self.turns[left]);
-        let endless = direction * f64::INFINITY;
+        let onwards = |position: f64| position * direction;
         let shift = self.shift();
         Some(Along {
             direction,
             stretch: path.stretch_at(piece, direction, self.position - shift.position),
             shift,
-            from: piece.before.map_or(-endless, |_| piece.begin.target),
-            to: piece
-                .after
-                .map_or(endless, |after| path.pieces[after].begin.target),
-            rejoins: rejoins.unwrap_or(endless),
+            from: piece
+                .before
+                .map_or(f64::NEG_INFINITY, |_| onwards(piece.begin.target)),
+            to: piece.after.map_or(f64::INFINITY, |after| {
+                onwards(path.pieces[after].begin.target)
+            }),
+            rejoins: rejoins.map_or(f64::INFINITY, onwards),
             matches_until: if piece.branch + 2 < path.branches.len() {
                 path.branches[piece.branch + 1].end
             } else {

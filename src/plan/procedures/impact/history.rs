@@ -95,77 +95,24 @@ static NO_NUMBERS: [Numbers; NUMBERS] = [const {
     }
 }; NUMBERS];
 
-/// The numbers from which others follow, by their index in [`ImpactStep::numbers`].
+/// Indices in [`ImpactStep::numbers`].
+const TIME: usize = 0;
 const COMMAND: usize = 2;
-/// See [`COMMAND`].
+const COMPUTED: usize = 3;
+const DISPLACEMENT: usize = 4;
 const VELOCITY: usize = 5;
-/// See [`COMMAND`].
 const STRIKER_VELOCITY: usize = 10;
+const STRIKER_ENERGY: usize = 13;
+const STRUCTURE_ENERGY: usize = 14;
 
 impl ImpactSteps {
-    /// No steps, with space for so many.
-    #[must_use]
-    pub fn with_capacity(capacity: usize, constants: ImpactConstants) -> Self {
-        Self {
-            constants,
-            states: Vec::with_capacity(capacity),
-            ..Self::default()
-        }
-    }
-
-    /// Adds the next step.
-    #[inline]
-    pub fn push(&mut self, step: &ImpactStep) {
-        let numbers = step.numbers();
-        if self.is_empty() {
-            self.first = step.step;
-            let kept = self.numbers.insert(Box::default());
-            for (kept, number) in kept.iter_mut().zip(numbers) {
-                kept.first = number;
-            }
-        }
-        let firsts = self.numbers();
-        let others_follow = [COMMAND, VELOCITY, STRIKER_VELOCITY];
-        let mut expected = self
-            .step(self.len(), step.state, |index, expected| {
-                if others_follow.contains(&index) {
-                    numbers[index]
-                } else {
-                    expected
-                }
-            })
-            .numbers();
-        for index in others_follow {
-            expected[index] = firsts[index].first;
-        }
-        let mut unexpected = 0_u32;
-        for (index, (number, expected)) in numbers.iter().zip(&expected).enumerate() {
-            unexpected |= u32::from(number.to_bits() != expected.to_bits()) << index;
-        }
-        if let Some(kept) = &mut self.numbers {
-            for (index, kept) in kept.iter_mut().enumerate() {
-                if !kept.each.is_empty() {
-                    kept.each.push(numbers[index]);
-                    unexpected &= !(1 << index);
-                }
-            }
-        }
-        if unexpected != 0 {
-            self.keep_from_now_on(unexpected, &numbers);
-        }
-        self.states.push(step.state);
-    }
-
-    /// Keeps the numbers with these indices, one bit each: those of the steps so far, and of the next one.
+    /// Keeps the number with this index, with space for so many.
     #[cold]
-    fn keep_from_now_on(&mut self, indices: u32, next: &[f64; NUMBERS]) {
-        for index in (0..NUMBERS).filter(|index| indices >> index & 1 == 1) {
-            let mut each = Vec::with_capacity(self.states.capacity());
-            each.extend(self.iter().map(|step| step.numbers()[index]));
-            each.push(next[index]);
-            if let Some(numbers) = &mut self.numbers {
-                numbers[index].each = each;
-            }
+    fn keep_from_now_on(&mut self, number: usize, capacity: usize) {
+        let mut each = Vec::with_capacity(capacity.max(self.len() + BLOCK));
+        each.extend(self.iter().map(|step| step.numbers()[number]));
+        if let Some(numbers) = &mut self.numbers {
+            numbers[number].each = each;
         }
     }
 
@@ -196,67 +143,31 @@ impl ImpactSteps {
     #[inline(always)]
     fn at(&self, index: usize) -> ImpactStep {
         let numbers = self.numbers();
-        self.step(index, self.states[index], |number, expected| {
-            numbers[number].each.get(index).copied().unwrap_or(expected)
+        let kept = |number: usize| numbers[number].each.get(index).copied();
+        // One that others follow from follows from none.
+        let first = |number: usize| kept(number).unwrap_or(numbers[number].first);
+        ImpactStep::of(self.first + index as u64, self.states[index], |number| {
+            kept(number).unwrap_or_else(|| self.expected(number, index, first))
         })
     }
 
-    /// The step at `index`, of which `number` gives each number, by its index, from the expected one.
+    /// The number with this index, as it follows from others or from that of the first step, of the step at `index`.
     #[expect(clippy::cast_precision_loss, reason = "far fewer steps than 2^53")]
     #[expect(clippy::inline_always, reason = "as `ImpactSteps::at`")]
     #[inline(always)]
-    fn step(
-        &self,
-        index: usize,
-        state: StepState,
-        number: impl Fn(usize, f64) -> f64,
-    ) -> ImpactStep {
-        let firsts = self.numbers();
-        let as_first = |index: usize| number(index, firsts[index].first);
+    fn expected(&self, number: usize, index: usize, other: impl Fn(usize) -> f64) -> f64 {
         let ImpactConstants {
             time_step,
             mass,
             striker_mass,
         } = self.constants;
-        let step = self.first + index as u64;
-        // A signed number is converted in one instruction.
-        let time = step.cast_signed() as f64 * time_step;
-        let command = as_first(COMMAND);
-        let velocity = as_first(VELOCITY);
-        let striker_velocity = as_first(STRIKER_VELOCITY);
-        ImpactStep {
-            step,
-            time: number(0, time),
-            wall_time: as_first(1),
-            state,
-            command,
-            computed: number(3, command),
-            displacement: number(4, command),
-            velocity,
-            acceleration: as_first(6),
-            restoring_force: as_first(7),
-            contact_force: as_first(8),
-            striker_displacement: as_first(9),
-            striker_velocity,
-            tangent_stiffness: as_first(11),
-            indentation: as_first(12),
-            energies: Energies {
-                striker: number(13, kinetic_energy(striker_mass, striker_velocity)),
-                structure: number(14, kinetic_energy(mass, velocity)),
-                restoring: as_first(15),
-                damping: as_first(16),
-                contact_loss: as_first(17),
-                indentation: as_first(18),
-                weight: as_first(19),
-                gravity: as_first(20),
-                error: as_first(21),
-            },
-            tracking: Tracking {
-                energy_error: as_first(22),
-                indicator: as_first(23),
-                nrms_error: as_first(24),
-                peak_error: as_first(25),
-            },
+        match number {
+            // A signed number is converted in one instruction.
+            TIME => (self.first + index as u64).cast_signed() as f64 * time_step,
+            COMPUTED | DISPLACEMENT => other(COMMAND),
+            STRIKER_ENERGY => kinetic_energy(striker_mass, other(STRIKER_VELOCITY)),
+            STRUCTURE_ENERGY => kinetic_energy(mass, other(VELOCITY)),
+            _ => self.numbers()[number].first,
         }
     }
 
@@ -301,6 +212,111 @@ impl ImpactSteps {
             force: step.restoring_force,
         };
         self.iter().map(reading).collect()
+    }
+}
+
+/// How many steps are put into the columns together.
+const BLOCK: usize = 64;
+
+/// The steps of an impact in progress. A block of steps is put into the columns number by number, which takes a third of the time of one step
+/// after the other.
+#[derive(Clone, Debug, Default)]
+pub struct CollectedSteps {
+    /// Those of all blocks that are complete.
+    steps: ImpactSteps,
+    capacity: usize,
+    /// The steps of the present block.
+    states: Vec<StepState>,
+    rows: Vec<[f64; NUMBERS]>,
+}
+
+impl CollectedSteps {
+    /// No steps, with space for so many.
+    #[must_use]
+    pub fn with_capacity(capacity: usize, constants: ImpactConstants) -> Self {
+        Self {
+            steps: ImpactSteps {
+                constants,
+                states: Vec::with_capacity(capacity),
+                ..ImpactSteps::default()
+            },
+            capacity,
+            states: Vec::with_capacity(BLOCK),
+            rows: Vec::with_capacity(BLOCK),
+        }
+    }
+
+    /// Adds the next step.
+    #[inline]
+    pub fn push(&mut self, step: &ImpactStep) {
+        if self.rows.is_empty() && self.steps.is_empty() {
+            self.steps.first = step.step;
+        }
+        self.states.push(step.state);
+        self.rows.push(step.numbers());
+        if self.rows.len() == BLOCK {
+            self.put_into_columns();
+        }
+    }
+
+    fn put_into_columns(&mut self) {
+        let Self {
+            steps,
+            capacity,
+            states,
+            rows,
+        } = self;
+        let Some(first) = rows.first() else {
+            return;
+        };
+        let before = steps.len();
+        if steps.numbers.is_none() {
+            let numbers = first.map(|first| Numbers {
+                first,
+                each: Vec::new(),
+            });
+            steps.numbers = Some(Box::new(numbers));
+        }
+        for number in 0..NUMBERS {
+            let is_expected = |(at, row): (usize, &[f64; NUMBERS])| {
+                let expected = steps.expected(number, before + at, |other| row[other]);
+                row[number].to_bits() == expected.to_bits()
+            };
+            if steps.numbers()[number].each.is_empty() {
+                if rows.iter().enumerate().all(is_expected) {
+                    continue;
+                }
+                steps.keep_from_now_on(number, *capacity);
+            }
+            if let Some(numbers) = &mut steps.numbers {
+                let each = &mut numbers[number].each;
+                each.extend(rows.iter().map(|row| row[number]));
+            }
+        }
+        steps.states.append(states);
+        rows.clear();
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty() && self.steps.is_empty()
+    }
+
+    #[must_use]
+    pub fn last(&self) -> Option<ImpactStep> {
+        let Some((row, state)) = self.rows.last().zip(self.states.last()) else {
+            return self.steps.last();
+        };
+        let before = self.steps.len() + self.rows.len() - 1;
+        let step = self.steps.first + before as u64;
+        Some(ImpactStep::of(step, *state, |number| row[number]))
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn finish(mut self) -> ImpactSteps {
+        self.put_into_columns();
+        self.steps
     }
 }
 
@@ -349,14 +365,54 @@ impl<'a> IntoIterator for &'a ImpactSteps {
 
 impl FromIterator<ImpactStep> for ImpactSteps {
     fn from_iter<I: IntoIterator<Item = ImpactStep>>(steps: I) -> Self {
-        let mut all = Self::default();
+        let mut all = CollectedSteps::default();
         steps.into_iter().for_each(|step| all.push(&step));
-        all
+        all.finish()
     }
 }
 
 impl ImpactStep {
-    /// As [`ImpactSteps::get`] puts them back.
+    /// The step with these numbers, by their index in [`Self::numbers`].
+    #[expect(clippy::inline_always, reason = "as `ImpactSteps::at`")]
+    #[inline(always)]
+    fn of(step: u64, state: StepState, number: impl Fn(usize) -> f64) -> Self {
+        Self {
+            step,
+            time: number(TIME),
+            wall_time: number(1),
+            state,
+            command: number(COMMAND),
+            computed: number(COMPUTED),
+            displacement: number(DISPLACEMENT),
+            velocity: number(VELOCITY),
+            acceleration: number(6),
+            restoring_force: number(7),
+            contact_force: number(8),
+            striker_displacement: number(9),
+            striker_velocity: number(STRIKER_VELOCITY),
+            tangent_stiffness: number(11),
+            indentation: number(12),
+            energies: Energies {
+                striker: number(STRIKER_ENERGY),
+                structure: number(STRUCTURE_ENERGY),
+                restoring: number(15),
+                damping: number(16),
+                contact_loss: number(17),
+                indentation: number(18),
+                weight: number(19),
+                gravity: number(20),
+                error: number(21),
+            },
+            tracking: Tracking {
+                energy_error: number(22),
+                indicator: number(23),
+                nrms_error: number(24),
+                peak_error: number(25),
+            },
+        }
+    }
+
+    /// All its numbers.
     #[inline]
     const fn numbers(&self) -> [f64; NUMBERS] {
         let Self {
@@ -400,17 +456,7 @@ mod tests {
 
     /// The step with these numbers, in the order of [`ImpactStep::numbers`].
     fn step_of(step: u64, numbers: [f64; NUMBERS]) -> ImpactStep {
-        let numbers = numbers.map(|first| Numbers {
-            first,
-            each: vec![first],
-        });
-        let steps = ImpactSteps {
-            first: step,
-            states: vec![StepState::Contact],
-            numbers: Some(Box::new(numbers)),
-            ..ImpactSteps::default()
-        };
-        steps.at(0)
+        ImpactStep::of(step, StepState::Contact, |number| numbers[number])
     }
 
     /// The indices of the numbers that take memory.
@@ -431,7 +477,7 @@ mod tests {
     fn steps_come_back_to_the_bit_and_constant_numbers_take_no_memory() {
         let step = |index: u32| ImpactStep {
             contact_force: 0.0,
-            indentation: if index < 7 { 0.0 } else { -0.0 },
+            indentation: if index < 100 { 0.0 } else { -0.0 },
             state: if index == 4 {
                 StepState::Free
             } else {
@@ -442,14 +488,14 @@ mod tests {
                 std::array::from_fn(|number| (26.0 * f64::from(index) + number as f64).sin()),
             )
         };
-        let all: ImpactSteps = (0..10).map(step).collect();
-        assert_eq!((all.len(), all.is_empty()), (10, false));
+        let all: ImpactSteps = (0..200).map(step).collect();
+        assert_eq!((all.len(), all.is_empty()), (200, false));
         for (index, found) in (0..).zip(all.iter()) {
             assert_eq!(found, step(index));
             assert_eq!(bits(found), bits(step(index)));
         }
-        assert_eq!((all.first(), all.last()), (Some(step(0)), Some(step(9))));
-        assert_eq!(all.get(10), None);
+        assert_eq!((all.first(), all.last()), (Some(step(0)), Some(step(199))));
+        assert_eq!(all.get(200), None);
         assert!(all.range(2..4).eq([step(2), step(3)]));
         assert!(all.pairs().nth(8) == Some((step(8), step(9))));
         let all_but = |constant: &[usize]| -> Vec<usize> {
@@ -458,8 +504,14 @@ mod tests {
                 .collect()
         };
         assert_eq!(kept(&all), all_but(&[8]));
-        let before: ImpactSteps = (0..7).map(step).collect();
+        let before: ImpactSteps = (0..100).map(step).collect();
         assert_eq!(kept(&before), all_but(&[8, 12]));
+        let mut collected = CollectedSteps::default();
+        assert!(collected.is_empty() && collected.last().is_none());
+        for index in 0..200 {
+            collected.push(&step(index));
+            assert_eq!(collected.last(), Some(step(index)));
+        }
         let none = ImpactSteps::default();
         assert_eq!(
             (none.first(), none.last(), none.pairs().count()),
@@ -514,10 +566,13 @@ mod tests {
             step.energies.structure = kinetic_energy(constants.mass, step.velocity) + off;
             step
         };
-        let mut all = ImpactSteps::with_capacity(9, constants);
-        (0..6).for_each(|index| all.push(&step(index)));
-        assert_eq!(kept(&all), [COMMAND, VELOCITY, 7, STRIKER_VELOCITY]);
-        (6..9).for_each(|index| all.push(&step(index)));
+        let of_steps = |count: u32| {
+            let mut all = CollectedSteps::with_capacity(9, constants);
+            (0..count).for_each(|index| all.push(&step(index)));
+            all.finish()
+        };
+        assert_eq!(kept(&of_steps(6)), [COMMAND, VELOCITY, 7, STRIKER_VELOCITY]);
+        let all = of_steps(9);
         assert_eq!(kept(&all), [COMMAND, 4, VELOCITY, 7, STRIKER_VELOCITY, 14]);
         for (index, (found, reading)) in (0..).zip(all.iter().zip(all.readings())) {
             let step = step(index);
