@@ -444,16 +444,6 @@ pub trait Rig {
     }
 }
 
-/// Copies a number of each axis. Most rigs have one axis, and for one number a call would take longer than the copy.
-#[inline]
-fn copy(from: &[f64], to: &mut Vec<f64>) {
-    if let ([from], [to]) = (from, &mut to[..]) {
-        *to = *from;
-    } else {
-        from.clone_into(to);
-    }
-}
-
 /// A step that ended early.
 #[derive(Debug)]
 pub struct UnfinishedStep {

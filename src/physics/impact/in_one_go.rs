@@ -32,30 +32,33 @@ pub fn simulate<S: RestoringForce, K: Sink>(
 ) -> Result<ImpactState, ImpactError> {
     let solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
     let read = |[target, _]: [f64; 2]| [target, specimen.move_to(target)];
-    Ok(from_start(input, solver, until, steps, read, sink))
+    let mut caller = Uninterrupted { read, sink };
+    Ok(from_start(input, solver, until, steps, &mut caller))
 }
 
-/// An impact on one degree of freedom from its start, of which `solver` is at the start, `steps` steps at most. For a target \[m\] and the
-/// predicted velocity there \[m/s\], `read` gives displacement \[m\] and force \[N\].
-pub(crate) fn from_start<K: Sink>(
+/// An impact on one degree of freedom from its start, of which `solver` is at the start, `steps` steps at most. Gives its end.
+pub(crate) fn from_start<C: Caller>(
     input: &ImpactInput,
     mut solver: ImpactSolver,
     until: Option<Until>,
     steps: u64,
-    read: impl FnMut([f64; 2]) -> [f64; 2],
-    sink: &mut K,
+    caller: &mut C,
 ) -> ImpactState {
-    let mut caller = Uninterrupted { read, sink };
-    if let Some((_, last)) = steps_in_one_go(input, &solver, until, steps, &mut caller) {
+    if let Some((_, last)) = steps_in_one_go(input, &solver, until, steps, caller) {
         return last;
     }
-    let Uninterrupted { mut read, sink } = caller;
-    let read = |solver: &mut ImpactSolver| {
+    for _ in 0..steps {
         let mut velocity = [0.0];
         solver.predicted_velocity(&mut velocity);
-        read([solver.predict(), velocity[0]])
-    };
-    solver.run(until, steps, read, sink);
+        let Some([displacement, force]) = caller.read([solver.predict(), velocity[0]]) else {
+            break;
+        };
+        solver.complete(displacement, force);
+        let over = until.is_some_and(|until| solver.over(until));
+        if !caller.end(solver.structure(), solver.state(), over) || over {
+            break;
+        }
+    }
     *solver.state()
 }
 
@@ -346,7 +349,11 @@ mod tests {
                 velocities.push(velocity);
                 read(target)
             };
-            from_start(&input, solver(), None, 700, reads, &mut ends);
+            let mut caller = Uninterrupted {
+                read: reads,
+                sink: &mut ends,
+            };
+            from_start(&input, solver(), None, 700, &mut caller);
             let (mut solver, mut own, mut predicted) = (solver(), Vec::new(), Vec::new());
             for _ in 0..700 {
                 let mut velocity = [0.0];

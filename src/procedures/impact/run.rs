@@ -26,6 +26,7 @@ use psd_physics::integrator::state::State;
 use psd_physics::integrator::tangents::HasTangents;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::matrix::copy;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
     CollectedSteps, FloorMotion, FloorStep, History, ImpactConstants, ImpactHistory, ImpactStep,
@@ -434,7 +435,7 @@ impl<V: HasTangents> StepEnd for Struck<'_, V> {
 
 impl<V: HasTangents> Stepped for Struck<'_, V> {
     fn predict(&mut self, target: &mut [f64]) {
-        target.copy_from_slice(V::slice_of(&self.solver.predict()));
+        copy(V::slice_of(&self.solver.predict()), target);
     }
 
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {

@@ -13,6 +13,7 @@ use crate::run::stop::Stop;
 use psd_physics::integrator::solver::FrameSolver;
 use psd_physics::structure::elements::ElementReading;
 use psd_physics::structure::ground::{acceleration_at, next_acceleration};
+use psd_physics::structure::matrix::copy;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{FloorMotion, ShakeHistory, ShakeStep};
 use psd_plan::{Ground, Shake};
@@ -150,7 +151,7 @@ impl Stepped for Shaken<'_> {
             setting.scale * next_acceleration(&ground.times, &ground.accelerations, time, passed);
         let matrices = &setting.frame.properties.matrices;
         matrices.ground_load(ground_acceleration, load);
-        target.copy_from_slice(self.solver.predict(&self.load));
+        copy(self.solver.predict(&self.load), target);
     }
 
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {

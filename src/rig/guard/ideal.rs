@@ -3,7 +3,8 @@
 
 use super::{Guard, increment, inside};
 use crate::safety::failpoint::{Guarding, on};
-use crate::{LimitedQuantity, OWN_SPEED, Reading, RigFault, UnfinishedStep, copy};
+use crate::{LimitedQuantity, OWN_SPEED, Reading, RigFault, UnfinishedStep};
+use psd_physics::structure::matrix::Vector as _;
 use psd_plan::{Interval, Limits};
 
 /// What all steps of a run on an ideal rig have in common.
@@ -85,7 +86,7 @@ impl Guard<'_> {
         self.proposed = None;
         self.going.clear();
         self.speed = Some(steps.speed);
-        copy(targets, &mut self.commanded);
+        self.commanded.set(targets);
         self.settled = true;
         self.last_contact = reading.time;
         Ok(())

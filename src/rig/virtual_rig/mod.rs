@@ -24,9 +24,10 @@ use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault,
-    UnfinishedStep, WholeSteps, copy,
+    UnfinishedStep, WholeSteps,
 };
 use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::structure::matrix::Vector as _;
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::{Frame, Plan, Settle, Specimen, VirtualLink};
 
@@ -387,7 +388,7 @@ impl VirtualRig {
         for (axis, target) in self.axes.iter_mut().zip(targets) {
             travel = travel.max(axis.actuator.jump(*target));
         }
-        copy(targets, &mut self.bent);
+        self.bent.set(targets);
         let seconds = travel / speed;
         self.proposed = None;
         self.moved = Some([self.time, seconds]);
@@ -399,8 +400,8 @@ impl VirtualRig {
         self.springs
             .bend_at_once(targets, &mut self.restoring_force);
         reading.time = self.time;
-        copy(targets, &mut reading.displacement);
-        copy(&self.restoring_force, &mut reading.force);
+        reading.displacement.set(targets);
+        reading.force.set(&self.restoring_force);
         // A cell adds no drift and no noise.
         for force in &mut reading.force {
             *force += 0.0;

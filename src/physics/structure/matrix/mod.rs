@@ -325,6 +325,19 @@ impl Factor for Pivot {
     }
 }
 
+/// Copies the numbers of floors or axes, as many as there are. For the few of most tests a call would take longer than the copy.
+///
+/// # Panics
+/// The numbers of the two differ.
+#[inline]
+pub fn copy(from: &[f64], to: &mut [f64]) {
+    match (from, &mut *to) {
+        ([first], [to]) => *to = *first,
+        ([first, second], [to, after]) => (*to, *after) = (*first, *second),
+        _ => to.copy_from_slice(from),
+    }
+}
+
 impl Vector for Vec<f64> {
     type Matrix = SymmetricBand;
     type View<'a> = &'a [f64];
@@ -353,7 +366,7 @@ impl Vector for Vec<f64> {
     #[inline]
     fn set(&mut self, view: &[f64]) {
         if self.len() == view.len() {
-            self.copy_from_slice(view);
+            copy(view, self);
         } else {
             view.clone_into(self);
         }
