@@ -157,7 +157,7 @@ impl<'rig> State<'rig> {
     /// a rig is not kept waiting for a replay.
     pub(super) fn answers_from_the_log(&mut self) -> bool {
         let stroke = |line: &Line| self.undecided == Some(Undecided::Stroke(line.seq));
-        if self.lines.front().is_none_or(stroke) {
+        if self.begin.is_some() && self.lines.front().is_none_or(stroke) {
             self.open();
         }
         !self.lines.is_empty() || self.mismatch.is_some()
