@@ -3,16 +3,21 @@
 //! impact of the plan. Out: every step, and the results that follow from them. The equations are in `physics`; this file only connects
 //! them with the rig.
 
+#![allow(
+    clippy::inline_always,
+    reason = "a part of the loop over the steps, which computes what its parts read"
+)]
+
 use super::results::{observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::summary::StruckSummary;
 use super::uncertainty::{RecordedRun, UncertaintyInputs};
 use crate::procedures::frame::results::{drifted_to, observe_drift};
+use crate::procedures::stepping::end_of_step::{AxesState, Balance, EndOfStep};
+use crate::procedures::stepping::ideal_run::IdealRun;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
-use crate::procedures::stepping::step_loop::{
-    self, AxesState, Balance, IdealRun, StepEnd, Stepped,
-};
+use crate::procedures::stepping::step_loop::{self, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -348,13 +353,13 @@ impl Kept<'_> {
 }
 
 /// The end of a step.
-struct End<'a, 'kept, V> {
+struct EndOfImpactStep<'a, 'kept, V> {
     structure: &'a State<V>,
     state: &'a ImpactState,
     kept: &'a mut Kept<'kept>,
 }
 
-impl<V: HasTangents> StepEnd for End<'_, '_, V> {
+impl<V: HasTangents> EndOfStep for EndOfImpactStep<'_, '_, V> {
     #[inline(always)]
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.structure)
@@ -401,7 +406,7 @@ impl Caller for IdealCaller<'_, '_, '_, '_> {
 
     #[inline(always)]
     fn end(&mut self, structure: &State<f64>, state: &ImpactState, _: bool) -> bool {
-        self.run.end(&mut End {
+        self.run.end(&mut EndOfImpactStep {
             structure,
             state,
             kept: self.kept,
@@ -409,7 +414,7 @@ impl Caller for IdealCaller<'_, '_, '_, '_> {
     }
 }
 
-impl<V: HasTangents> StepEnd for Struck<'_, V> {
+impl<V: HasTangents> EndOfStep for Struck<'_, V> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.structure())
     }
@@ -487,7 +492,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         else {
             return false;
         };
-        run.keep_last(&mut End {
+        run.keep_last(&mut EndOfImpactStep {
             structure: &structure,
             state: &state,
             kept,

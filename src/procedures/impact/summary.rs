@@ -1,6 +1,11 @@
 //! The peaks of an impact, step by step; for a frame also those of every floor and storey. In: the ends of its steps. Out: a summary, from
 //! which its results follow. It knows no result and no plan.
 
+#![allow(
+    clippy::inline_always,
+    reason = "a part of the loop over the steps, which computes what its parts read"
+)]
+
 use psd_physics::contact::state::StepState;
 use psd_physics::impact::summary::{ImpactEnding, ImpactSummary, SummaryBuilder};
 use psd_physics::impact::{ImpactInput, ImpactState};

@@ -4,9 +4,10 @@
 use super::results::ShakeSummary;
 use super::setting::Setting;
 use crate::procedures::frame::results::drifted_to;
+use crate::procedures::stepping::end_of_step::{AxesState, Balance, EndOfStep};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{Start, not_stepped};
-use crate::procedures::stepping::step_loop::{self, AxesState, Balance, StepEnd, Stepped};
+use crate::procedures::stepping::step_loop::{self, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -100,7 +101,7 @@ struct Shaken<'a> {
     summary: &'a mut ShakeSummary,
 }
 
-impl StepEnd for Shaken<'_> {
+impl EndOfStep for Shaken<'_> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.state())
     }

@@ -4,8 +4,10 @@
 
 pub(crate) mod check;
 mod continuous_motion;
+pub(crate) mod end_of_step;
 pub(crate) mod energy;
 pub(crate) mod frame_uncertainty;
+pub(crate) mod ideal_run;
 pub(crate) mod operator_stability_watch;
 pub(crate) mod predicted;
 pub(crate) mod report;

@@ -8,60 +8,22 @@
 //! c·v/`time_scale`.
 
 use super::continuous_motion::{ContinuousMotion, Waypoint};
+use super::end_of_step::{AxesState, Balance, EndOfStep, Errors};
+use super::ideal_run::IdealRun;
 use super::operator_stability_watch::StifferSprings;
 use super::setting::{Start, Steps};
 use super::tracking::{At, Monitors, TrackingSummary};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::run::{AxisReport, Keep, StepReport};
-use psd_physics::integrator::state::State;
+use crate::run::{Keep, StepReport};
 use psd_physics::structure::assemblies::Assemblies;
 use psd_physics::structure::elements::ElementReading;
-use psd_physics::structure::matrix::Vector;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::{InspectTrigger, Mode, Stepping};
 use psd_rig::{IdealSteps, Reading};
 
-/// The energy of a test at the end of a step \[J\].
-pub(crate) struct Balance {
-    /// Energy error.
-    pub error: f64,
-    /// Reference of the relative errors.
-    pub input: f64,
-}
-
-impl Balance {
-    /// Energy error over its reference.
-    fn relative_error(&self) -> f64 {
-        if self.error == 0.0 {
-            0.0
-        } else {
-            self.error / self.input
-        }
-    }
-}
-
-/// The end of a step, which is kept with those before it.
-pub(crate) trait StepEnd {
-    fn axes(&self) -> AxesState<'_>;
-
-    /// Adds it to the results.
-    fn sum_up(&mut self) -> Balance;
-
-    /// Keeps it, with the tracking of each axis so far and the rig time \[s\].
-    fn keep(&mut self, axes: &[Tracking], wall_time: f64);
-
-    /// Whether a contact force acted in this step.
-    fn is_struck(&self) -> bool;
-
-    /// Steps of the procedure done before these.
-    fn before(&self) -> u64 {
-        0
-    }
-}
-
 /// Computes the steps of a structure. It is at the end of the last step.
-pub(crate) trait Stepped: StepEnd {
+pub(crate) trait Stepped: EndOfStep {
     /// Sets the target of each axis at the end of the next step \[m\]. Within one step it is always the same.
     fn predict(&mut self, target: &mut [f64]);
 
@@ -153,19 +115,7 @@ pub(crate) fn run<S: Stepped>(
     };
     let ended = match ideal {
         Some(ideal) => taken.all_ideally(steps, ideal, followed, session),
-        None => {
-            let ended = taken.all(steps, plan, followed, session);
-            if !keeps_steps {
-                let StepsTaken {
-                    stepped,
-                    monitors,
-                    wall_time,
-                    ..
-                } = &mut taken;
-                stepped.keep(monitors.tracking(), *wall_time);
-            }
-            ended
-        }
+        None => taken.all(steps, plan, followed, session),
     };
     let StepsTaken {
         mut stepped,
@@ -199,6 +149,20 @@ struct StepsTaken<S> {
 
 impl<S: Stepped> StepsTaken<S> {
     fn all(
+        &mut self,
+        steps: &Steps,
+        plan: &Stepping,
+        followed: &mut TrackingSummary,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let ended = self.each(steps, plan, followed, session);
+        if !self.keeps_steps {
+            self.stepped.keep(self.monitors.tracking(), self.wall_time);
+        }
+        ended
+    }
+
+    fn each(
         &mut self,
         steps: &Steps,
         plan: &Stepping,
@@ -293,7 +257,16 @@ impl<S: Stepped> StepsTaken<S> {
             session,
         };
         if !stepped.in_one_go(steps.count, &mut run) {
-            run.step_by_step(stepped, steps.count);
+            for _ in 0..steps.count {
+                stepped.predict(run.target());
+                let Some(reading) = run.read() else {
+                    break;
+                };
+                stepped.complete(reading);
+                if !run.end(stepped) || stepped.over() {
+                    break;
+                }
+            }
             run.keep_last(stepped);
         }
         let IdealRun { input, stop, .. } = run;
@@ -364,117 +337,6 @@ impl<S: Stepped> StepsTaken<S> {
     }
 }
 
-/// The steps of a run on an ideal rig.
-pub(crate) struct IdealRun<'a, 'rig> {
-    ideal: IdealSteps,
-    /// If a reading can show that a specimen is stiffer than its model.
-    watched: Option<&'a mut StifferSprings>,
-    /// The tracking of each axis, which stays as it is, and of all.
-    axes: &'a [Tracking],
-    tracking: Tracking,
-    keeps_steps: bool,
-    /// \[m\]
-    target: &'a mut [f64],
-    reading: &'a mut Reading,
-    /// Rig time at the end of the last step \[s\].
-    wall_time: f64,
-    /// Whether a contact force acted in the last step.
-    struck: bool,
-    /// None if the observer does not follow the steps.
-    report: Option<StepReport>,
-    /// The reference of the errors at the last completed step \[J\].
-    input: Option<f64>,
-    /// The limit that the reading of the step in progress exceeded.
-    beyond: Option<Stop>,
-    /// Why the run has ended before its duration.
-    stop: Option<Stop>,
-    session: &'a mut Session<'rig>,
-}
-
-impl IdealRun<'_, '_> {
-    /// The target of each axis at the end of the next step \[m\], to be set before [`Self::read`].
-    pub(crate) const fn target(&mut self) -> &mut [f64] {
-        self.target
-    }
-
-    /// Moves to the target and reads there. None: the run ends before this step.
-    #[inline(always)]
-    pub(crate) fn read(&mut self) -> Option<&Reading> {
-        match self
-            .session
-            .step_ideally(self.ideal, self.target, self.reading)
-        {
-            Ok(None) => Some(self.reading),
-            Ok(Some(ended)) => {
-                self.beyond = Some(ended.fault.into());
-                Some(self.reading)
-            }
-            Err(stop) => {
-                self.stop = Some(stop);
-                None
-            }
-        }
-    }
-
-    /// Takes the end of a step. False: the run ends with it.
-    #[inline(always)]
-    pub(crate) fn end(&mut self, end: &mut impl StepEnd) -> bool {
-        let balance = end.sum_up();
-        self.wall_time = self.reading.time;
-        if self.keeps_steps {
-            end.keep(self.axes, self.wall_time);
-        }
-        if self.beyond.is_some() {
-            self.stop = self.beyond.take();
-            return false;
-        }
-        if let Some(stiffer) = &mut self.watched {
-            let before = std::mem::replace(&mut self.struck, end.is_struck());
-            stiffer.take(self.reading, &[], before || self.struck, self.session);
-        }
-        self.input = Some(balance.input);
-        let energy_error = balance.relative_error();
-        let checked = self.session.guard.check_energy_error(energy_error);
-        let ended = checked.map_err(Stop::from).and_then(|()| {
-            let (state, before) = (end.axes(), end.before());
-            let Some(report) = &mut self.report else {
-                self.session.step_passed(state.step + before);
-                return Ok(());
-            };
-            let errors = Errors {
-                energy_error,
-                tracking: self.tracking,
-                tracking_energy_error: self.tracking.share_of(balance.input),
-            };
-            errors.report(&state, report);
-            report.step += before;
-            self.session.step_done(report)
-        });
-        self.stop = ended.err();
-        self.stop.is_none()
-    }
-
-    /// Keeps the end of the last step, of a run that keeps its results alone.
-    pub(crate) fn keep_last(&self, end: &mut impl StepEnd) {
-        if !self.keeps_steps {
-            end.keep(self.axes, self.wall_time);
-        }
-    }
-
-    fn step_by_step(&mut self, stepped: &mut impl Stepped, count: u64) {
-        for _ in 0..count {
-            stepped.predict(self.target);
-            let Some(reading) = self.read() else {
-                break;
-            };
-            stepped.complete(reading);
-            if !self.end(stepped) || stepped.over() {
-                break;
-            }
-        }
-    }
-}
-
 /// The waypoint of each axis at the end of this step.
 fn waypoints(
     stepped: &mut impl Stepped,
@@ -496,65 +358,6 @@ fn waypoints(
             struck,
         })
         .collect()
-}
-
-/// The end of a step, one entry per axis.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AxesState<'a> {
-    pub step: u64,
-    /// \[s\]
-    pub time: f64,
-    /// \[m\]
-    pub target: &'a [f64],
-    /// Measured \[m\].
-    pub displacement: &'a [f64],
-    /// \[m/s\]
-    pub velocity: &'a [f64],
-    /// \[m/s²\]
-    pub acceleration: &'a [f64],
-    /// Measured \[N\].
-    pub force: &'a [f64],
-}
-
-impl<'a> AxesState<'a> {
-    #[inline(always)]
-    pub(crate) fn of<V: Vector>(state: &'a State<V>) -> Self {
-        Self {
-            step: state.step,
-            time: state.time,
-            target: state.target.as_slice(),
-            displacement: state.measured_displacement.as_slice(),
-            velocity: state.velocity.as_slice(),
-            acceleration: state.acceleration.as_slice(),
-            force: state.restoring_force.as_slice(),
-        }
-    }
-}
-
-/// The errors of a step.
-pub(crate) struct Errors {
-    pub energy_error: f64,
-    pub tracking: Tracking,
-    pub tracking_energy_error: Option<f64>,
-}
-
-impl Errors {
-    /// Sets the report of a step of all axes.
-    fn report(&self, state: &AxesState<'_>, report: &mut StepReport) {
-        let axis = |axis: usize| AxisReport {
-            command: state.target[axis],
-            displacement: state.displacement[axis],
-            velocity: Some(state.velocity[axis]),
-            acceleration: Some(state.acceleration[axis]),
-            force: state.force[axis],
-        };
-        (report.step, report.time) = (state.step, state.time);
-        report.axes.clear();
-        report.axes.extend((0..state.target.len()).map(axis));
-        report.energy_error = Some(self.energy_error);
-        report.tracking = Some(self.tracking);
-        report.tracking_energy_error = self.tracking_energy_error;
-    }
 }
 
 /// The triggers of the plan with their states.

@@ -53,8 +53,8 @@ pub(super) struct StepsDigest {
     bytes: Vec<u8>,
     /// Where the last of them begins in `bytes`.
     start: usize,
-    /// The sum of x − x over its numbers: not zero if one is not finite.
-    finite: f64,
+    /// Whether all its numbers are finite.
+    finite: bool,
     pub entries: u64,
     pub steps: u64,
     targets: u64,
@@ -135,10 +135,9 @@ impl StepsDigest {
         self.begin(4, &given, report.axes.len());
         self.word(report.step);
         self.numbers_of([report.time, command, displacement, force]);
-        for optional in [velocity, acceleration, energy_error] {
-            if let Some(number) = optional {
-                self.number(number);
-            }
+        let optional = [velocity, acceleration, energy_error];
+        for number in optional.into_iter().flatten() {
+            self.number(number);
         }
         for axis in &report.axes[1..] {
             let AxisBody { u, x, v, a, r } = AxisBody::of(axis);
@@ -169,7 +168,7 @@ impl StepsDigest {
 
     /// The first word: the kind, a bit for each optional part, and the number of axes.
     fn begin<const N: usize>(&mut self, kind: u64, given: &[bool; N], axes: usize) {
-        (self.start, self.finite) = (self.bytes.len(), 0.0);
+        (self.start, self.finite) = (self.bytes.len(), true);
         let bits = given
             .iter()
             .rev()
@@ -187,7 +186,7 @@ impl StepsDigest {
 
     fn numbers_of<const N: usize>(&mut self, numbers: [f64; N]) {
         for number in numbers {
-            self.finite += number - number;
+            self.finite &= number.is_finite();
         }
         self.bytes
             .extend_from_slice(numbers.map(f64::to_le_bytes).as_flattened());
@@ -201,7 +200,7 @@ impl StepsDigest {
 
     /// One of a number that is not finite has no effect.
     fn end(&mut self) -> Result<(), Refusal> {
-        if self.finite != 0.0 {
+        if !self.finite {
             self.bytes.truncate(self.start);
             return Err(Refusal::NotFinite);
         }

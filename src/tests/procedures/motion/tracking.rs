@@ -1,10 +1,11 @@
 //! Floors that follow sines on a virtual rig with known errors. Indicator, energy error, NRMS and peak of each axis are compared with
 //! closed forms, in both modes. Some runs are held because of these values.
 
+use crate::procedures::stepping::end_of_step::{AxesState, Balance, EndOfStep};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::Start;
 use crate::procedures::stepping::setting::Steps;
-use crate::procedures::stepping::step_loop::{self, AxesState, Balance, StepEnd, Stepped};
+use crate::procedures::stepping::step_loop::{self, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::Unwatched;
 use crate::run::session::Session;
@@ -44,7 +45,7 @@ impl Sine {
     }
 }
 
-impl StepEnd for &mut Sine {
+impl EndOfStep for &mut Sine {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(&self.state)
     }
