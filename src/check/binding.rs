@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use psd_language::check::expressions::overrides::LocatedSetting;
 use psd_language::check::expressions::parameters::{has_let, names_of_parameters};
 use psd_language::check::scope::{BoundInput, Scope, Setting};
 use psd_language::check::violations::UnknownParameter;
@@ -29,6 +30,7 @@ pub struct Binder<'a> {
     parsed: &'a ParsedPlan,
     inputs: &'a BoundInputs,
     scope: Scope<'a>,
+    settings: Vec<LocatedSetting<'a>>,
     /// Errors that do not depend on any number.
     errors: Vec<Diagnostic>,
     findings: Findings,
@@ -74,10 +76,12 @@ impl<'a> Binder<'a> {
     #[must_use]
     pub fn new(parsed: &'a ParsedPlan, inputs: &'a BoundInputs) -> Self {
         let mut errors = parsed.errors.clone();
+        let scope = Scope::collect(&parsed.trees, &inputs.settings, &mut errors);
         Self {
             parsed,
             inputs,
-            scope: Scope::collect(&parsed.trees, &inputs.settings, &mut errors),
+            settings: LocatedSetting::all(&scope, &inputs.settings),
+            scope,
             errors,
             findings: Findings::ErrorsAlone,
             parts: PlanParts::default(),
@@ -106,7 +110,7 @@ impl<'a> Binder<'a> {
         let given = Given {
             scope: &self.scope,
             errors: self.errors.clone(),
-            settings: &self.inputs.settings,
+            settings: &self.settings,
             bound: numbers,
             written: &self.inputs.written,
             loader: &no_files,

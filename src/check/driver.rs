@@ -223,7 +223,6 @@ pub fn plan(
     findings: Findings,
 ) -> Option<Plan> {
     checker.for_studies = options.for_studies;
-    checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     let blocks_of = |checker: &Checker, kind| -> Vec<usize> {
         let blocks = checker.scope.of_kind(kind);
         blocks.map(|(index, _)| index).collect()

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use crate::codes::E666;
 use psd_language::check::checker::{Checker, End};
 use psd_language::check::expressions::data_file::DataFile;
+use psd_language::check::expressions::overrides::LocatedSetting;
 use psd_language::check::expressions::parameters::read_settings;
 use psd_language::check::scope::{Scope, Setting};
 use psd_language::check::wording::shown;
@@ -54,7 +55,8 @@ pub(super) struct Given<'a> {
     pub scope: &'a Scope<'a>,
     /// Errors that were found before.
     pub errors: Vec<Diagnostic>,
-    pub settings: &'a BTreeMap<String, Setting>,
+    /// Values of fields from outside the plan.
+    pub settings: &'a [LocatedSetting<'a>],
     /// The numbers that are bound, by their inputs, SI.
     pub bound: &'a [f64],
     /// The texts of `--set`.
@@ -206,7 +208,7 @@ impl ParsedPlan {
         let given = Given {
             scope: &scope,
             errors,
-            settings: &self.settings,
+            settings: &LocatedSetting::all(&scope, &self.settings),
             bound: &[],
             written: &self.written_settings(),
             loader,

@@ -128,6 +128,9 @@ impl Formula {
         results: &dyn Results,
         critical: Option<f64>,
     ) -> Result<Vec<Contribution>, FormulaError> {
+        if matches!(self, Self::Constant(_)) {
+            return Ok(Vec::new());
+        }
         let mut references = Vec::new();
         self.collect_references(&mut references);
         let mut sources = sources_of(&references, results);

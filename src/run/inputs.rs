@@ -28,7 +28,7 @@ impl<'record> Inputs<'record> {
         Self {
             results,
             procedure,
-            recorded: Vec::new(),
+            recorded: Vec::with_capacity(8),
             moved: false,
             lift: 0.0,
             observations: Vec::new(),

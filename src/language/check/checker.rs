@@ -37,7 +37,9 @@ pub type Reread<T> = Traced<Option<Rc<T>>>;
 /// with them.
 #[derive(Default)]
 pub struct FixedValues {
+    /// Those of other nodes are there too, and are evaluated again.
     known: BTreeMap<Node, Known>,
+    checks: u64,
     frames: BTreeMap<usize, Reread<Frame>>,
     behaviours: BTreeMap<usize, Reread<Behaviour>>,
 }
@@ -47,6 +49,8 @@ struct Known {
     traced: Traced<Option<Typed>>,
     /// Whether it has a value that no bound value reaches, and its evaluation reported nothing and read no result.
     is_fixed: bool,
+    /// Number of the check that evaluated it.
+    check: u64,
 }
 
 /// One number or a list.
@@ -131,6 +135,8 @@ pub struct Checker<'a> {
     /// Spans that one diagnostic explains in full.
     pub explained: Vec<Span>,
     known: BTreeMap<Node, Known>,
+    /// Number of checks before this one that began with each other's values.
+    checks: u64,
     pub used: BTreeSet<usize>,
     /// The blocks that a field or an expression names.
     pub used_blocks: BTreeSet<usize>,
@@ -254,6 +260,7 @@ impl<'a> Checker<'a> {
             unread_words,
             explained: Vec::new(),
             known,
+            checks: 0,
             used,
             used_blocks: BTreeSet::new(),
             read: Vec::new(),
@@ -292,7 +299,10 @@ impl<'a> Checker<'a> {
         requested_at: Span,
         work: impl FnOnce(&mut Self) -> Option<Typed>,
     ) -> Option<Typed> {
-        if let Some(Known { traced, .. }) = self.known.get(&node) {
+        let known = self.known.get(&node);
+        if let Some(Known { traced, .. }) =
+            known.filter(|known| known.is_fixed || known.check == self.checks)
+        {
             self.reads_bound |= traced.is_bound;
             return traced.value.clone();
         }
@@ -302,7 +312,12 @@ impl<'a> Checker<'a> {
                 .traced(|checker| work(checker).and_then(|typed| checker.of_bounded_size(typed)));
             let value = traced.value.clone();
             let is_fixed = !traced.is_bound && value.is_some() && checker.left_behind() == before;
-            checker.known.insert(node, Known { traced, is_fixed });
+            let known = Known {
+                traced,
+                is_fixed,
+                check: checker.checks,
+            };
+            checker.known.insert(node, known);
             value
         })
     }
@@ -327,20 +342,22 @@ impl<'a> Checker<'a> {
     pub fn begin_with(&mut self, fixed: FixedValues) {
         let FixedValues {
             known,
+            checks,
             frames,
             behaviours,
         } = fixed;
-        (self.known, self.frames, self.behaviours) = (known, frames, behaviours);
+        (self.known, self.checks) = (known, checks);
+        (self.frames, self.behaviours) = (frames, behaviours);
     }
 
     /// The values with which the next check may begin.
     pub fn fixed_values(&mut self) -> FixedValues {
         let mut fixed = FixedValues {
             known: std::mem::take(&mut self.known),
+            checks: self.checks + 1,
             frames: std::mem::take(&mut self.frames),
             behaviours: std::mem::take(&mut self.behaviours),
         };
-        fixed.known.retain(|_, known| known.is_fixed);
         fixed.frames.retain(|_, frame| frame.is_fixed());
         fixed.behaviours.retain(|_, behaviour| behaviour.is_fixed());
         fixed
@@ -399,7 +416,7 @@ impl<'a> Checker<'a> {
                 .map(|node| self.describe(*node))
                 .collect();
             for node in self.stack[start..].iter().copied() {
-                self.known.insert(node, Known::unknown());
+                self.known.insert(node, Known::unknown(self.checks));
             }
             return self.fail(CircularDefinition {
                 cycle: &cycle,
@@ -414,7 +431,7 @@ impl<'a> Checker<'a> {
                     most: DEEPEST_VALUES,
                 });
             }
-            self.known.insert(node, Known::unknown());
+            self.known.insert(node, Known::unknown(self.checks));
             return None;
         }
         self.stack.push(node);
@@ -462,10 +479,11 @@ impl<'a> Checker<'a> {
 
 impl Known {
     /// Something with an error.
-    const fn unknown() -> Self {
+    const fn unknown(check: u64) -> Self {
         Self {
             traced: Traced::unknown(),
             is_fixed: false,
+            check,
         }
     }
 }

@@ -17,7 +17,7 @@ use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{
-    History, Identity, ImpactHistory, ImpactSteps, NamedResult, Outcome, ProcedureRecord, Record,
+    History, Identity, ImpactHistory, ImpactSteps, Outcome, ProcedureRecord, Record,
 };
 use psd_plan::schema::ResultKind;
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
@@ -56,10 +56,10 @@ const OF_EVERY_STEP: [(ResultKind, WantedPart); 5] = [
 ];
 
 /// What a batch has to find for these results.
-pub(crate) fn wanted<'a>(results: impl Iterator<Item = &'a str>) -> Wanted {
+fn wanted(results: &[&str]) -> Wanted {
     let mut wanted = Wanted::default();
     for name in results {
-        if let Some((_, part)) = OF_EVERY_STEP.iter().find(|(kind, _)| kind.name == name) {
+        if let Some((_, part)) = OF_EVERY_STEP.iter().find(|(kind, _)| kind.name == *name) {
             *part(&mut wanted) = true;
         }
     }
@@ -69,9 +69,9 @@ pub(crate) fn wanted<'a>(results: impl Iterator<Item = &'a str>) -> Wanted {
 /// Whether a batch gives this result of an impact.
 pub(crate) fn gives(result: &str) -> bool {
     let history = without_steps(0.0, 0.0, ImpactEnding::default());
-    let known = of_impact(None, &history).map(|found| found.name);
-    let times = of_steps(&history).map(|found| found.name);
-    known.chain(times).any(|name| name == result) && !OF_STEPS.contains(&result)
+    let known = of_impact(None, &history).chain(of_steps(&history));
+    let mut names = known.map(|(kind, _)| kind.name);
+    names.any(|name| name == result) && !OF_STEPS.contains(&result)
 }
 
 impl BatchedImpact {
@@ -106,8 +106,8 @@ impl BatchedImpact {
         })
     }
 
-    /// Gives a record its outcome and its `kept` results, unless the rig has to find them.
-    fn end(&self, result: &Batched, kept: &[bool], record: &mut Record) -> Result<(), Leaves> {
+    /// Gives a record its outcome and those of its results that are `read`, unless the rig has to find them.
+    fn end(&self, result: &Batched, read: &[bool], record: &mut Record) -> Result<(), Leaves> {
         let Batched {
             summary,
             ending,
@@ -128,11 +128,12 @@ impl BatchedImpact {
         // What is known of an impact that was stopped is not a result.
         let summary = stop.is_none().then_some(summary);
         let results = of_impact(summary, &history).chain(of_steps(&history));
-        let results = results.zip(kept).filter(|(_, kept)| **kept);
+        let results = results.zip(read).filter(|(_, read)| **read);
+        let results = results.map(|((kind, value), _)| kind.found(value));
         let procedure = &mut record.procedures[0];
         procedure.complete = stop.is_none();
         procedure.results.clear();
-        procedure.results.extend(results.map(|(result, _)| result));
+        procedure.results.extend(results);
         procedure.history = History::Impact(history);
         record.outcome = stop.map_or(Outcome::Completed, |fault| Stop::Rig(fault).outcome());
         Ok(())
@@ -190,25 +191,13 @@ fn without_steps(time_step: f64, critical_time_step: f64, ending: ImpactEnding) 
     }
 }
 
-/// Which results of an impact a record keeps, in their order.
-fn kept(mut wanted: Wanted) -> Vec<bool> {
-    let history = without_steps(0.0, 0.0, ImpactEnding::default());
-    let results = of_impact(None, &history).chain(of_steps(&history));
-    let is_kept = |result: NamedResult| {
-        let mut of_every_step = OF_EVERY_STEP.iter();
-        let found = of_every_step.find(|(kind, _)| kind.name == result.name);
-        found.is_none_or(|(_, part)| *part(&mut wanted))
-    };
-    results.map(is_kept).collect()
-}
-
 /// The records of impacts of one procedure on a rig, each with its number among them and without steps: it is the same record, with other
-/// results.
+/// results. `results`: the names of those that are read.
 pub(crate) fn run(
     of: &Procedure,
     rig: Identity,
     impacts: &[BatchedImpact],
-    wanted: Wanted,
+    results: &[&str],
     mut read: impl FnMut(usize, Result<&Record, Leaves>),
 ) {
     let mut record = Record {
@@ -233,7 +222,7 @@ pub(crate) fn run(
     };
     let wanted = Wanted {
         reach: impacts.iter().any(|impact| bounds(&impact.limits)),
-        ..wanted
+        ..wanted(results)
     };
     let mut found: Vec<Option<Batched>> = impacts.iter().map(|_| None).collect();
     let mut left: Vec<usize> = (0..impacts.len()).collect();
@@ -254,10 +243,14 @@ pub(crate) fn run(
         }
         left = others;
     }
-    let kept = kept(wanted);
+    let history = without_steps(0.0, 0.0, ImpactEnding::default());
+    let known = of_impact(None, &history).chain(of_steps(&history));
+    let is_read: Vec<bool> = known
+        .map(|(kind, _)| results.contains(&kind.name))
+        .collect();
     for (number, (impact, found)) in impacts.iter().zip(found).enumerate() {
         let ended = match found {
-            Some(found) => impact.end(&found, &kept, &mut record),
+            Some(found) => impact.end(&found, &is_read, &mut record),
             None => Err(Leaves::NeedsRig),
         };
         read(number, ended.map(|()| &record));

@@ -25,10 +25,11 @@ pub(crate) fn results(
     history: &ImpactHistory,
 ) -> Vec<NamedResult> {
     let impact = summary.map(StruckSummary::impact);
-    let mut results = of_impact(impact.as_ref(), history).collect::<Vec<_>>();
+    let found = |(kind, value): (&ResultKind, _)| kind.found(value);
+    let mut results: Vec<_> = of_impact(impact.as_ref(), history).map(found).collect();
     let tracking = history.steps.last().map(|last| last.tracking);
     results.extend(tracking_results(followed.worst(), tracking));
-    results.extend(of_steps(history));
+    results.extend(of_steps(history).map(found));
     if let Some(frame) = &history.frame {
         let floors = summary.and_then(StruckSummary::floors);
         results.extend(of_frame(floors, frame));
@@ -52,7 +53,7 @@ enum Value {
 }
 
 /// Displacements, contact and energies: the results of an impact on any structure.
-const OF_IMPACT: [(ResultKind, Value); 16] = [
+static OF_IMPACT: [(ResultKind, Value); 16] = [
     (
         schema::MAX_DISPLACEMENT,
         Value::Between(|it| Some(it.max_displacement), |it| it.max_displacement),
@@ -121,40 +122,44 @@ const OF_IMPACT: [(ResultKind, Value); 16] = [
 pub(super) fn of_impact(
     summary: Option<&ImpactSummary>,
     history: &ImpactHistory,
-) -> impl Iterator<Item = NamedResult> {
+) -> impl Iterator<Item = (&'static ResultKind, Option<f64>)> {
     let energies = history.steps.last().map(|last| last.energies);
-    OF_IMPACT.into_iter().map(move |(kind, value)| {
-        kind.found(match value {
+    OF_IMPACT.iter().map(move |(kind, value)| {
+        let value = match value {
             Value::OfRun(read) | Value::AtSteps(read) | Value::Between(read, _) => {
                 summary.and_then(read)
             }
             Value::Energy(read, _) => energies.as_ref().map(read),
-        })
+        };
+        (kind, value)
     })
 }
 
 /// The results of a re-integrated impact that have an uncertainty; NaN if a result does not exist.
 pub(crate) fn re_integrated(values: &ImpactValues) -> Evaluated {
-    let found = |(kind, value)| {
+    let found = |(kind, value): &(ResultKind, Value)| {
         let number = match value {
             Value::OfRun(_) => return None,
             Value::AtSteps(read) => read(&values.summary).unwrap_or(f64::NAN),
             Value::Between(_, read) | Value::Energy(_, read) => read(values),
         };
-        Some((kind, vec![number]))
+        Some((*kind, vec![number]))
     };
-    OF_IMPACT.into_iter().filter_map(found).collect()
+    OF_IMPACT.iter().filter_map(found).collect()
 }
 
 /// Time steps, and how many.
-pub(super) fn of_steps(history: &ImpactHistory) -> [NamedResult; 3] {
+pub(super) fn of_steps(history: &ImpactHistory) -> [(&'static ResultKind, Option<f64>); 3] {
     let known = |value: f64| (value > 0.0).then_some(value);
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = history.steps.last().map(|last| last.step as f64);
     [
-        schema::TIME_STEP.found(known(history.time_step)),
-        schema::CRITICAL_TIME_STEP.found(known(history.critical_time_step)),
-        schema::STEPS.found(steps),
+        (&schema::TIME_STEP, known(history.time_step)),
+        (
+            &schema::CRITICAL_TIME_STEP,
+            known(history.critical_time_step),
+        ),
+        (&schema::STEPS, steps),
     ]
 }
 

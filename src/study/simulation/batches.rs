@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::procedures;
 use crate::procedures::impact::batched::{self, BatchedImpact, Leaves};
-use psd_physics::impact::summary::Wanted;
 use psd_plan::Plan;
 use psd_plan::formula::{ResultPart, ResultReference};
 use psd_plan::record::Record;
@@ -26,11 +25,6 @@ pub fn takes(plan: &Plan, read: &[ResultReference]) -> bool {
     impact(plan).is_some() && read.iter().all(given)
 }
 
-/// What a batch has to find for these results.
-pub fn wanted(read: &[ResultReference]) -> Wanted {
-    batched::wanted(read.iter().map(|reference| reference.name))
-}
-
 /// Impacts that wait to run together.
 #[derive(Default)]
 pub struct Batch {
@@ -46,19 +40,20 @@ impl Batch {
         self.impacts.push(impact);
     }
 
-    /// Reads the record of each with its number, or why it leaves the batch. `plan`: that of any of them.
+    /// Reads the record of each with its number, or why it leaves the batch. `plan`: that of any of them; `results`: what is read.
     pub fn run(
         self,
         plan: &Plan,
-        wanted: Wanted,
+        results: &[ResultReference],
         mut read: impl FnMut(usize, Result<&Record, Leaves>),
     ) {
         let rig = virtual_rig(plan).identity();
+        let names: Vec<&str> = results.iter().map(|reference| reference.name).collect();
         batched::run(
             &plan.procedures[0],
             rig,
             &self.impacts,
-            wanted,
+            &names,
             |at, record| read(self.numbers[at], record),
         );
     }

@@ -20,7 +20,7 @@ use crate::procedures::impact::batched::Leaves;
 use crate::run::{Keep, Unwatched, run_with};
 use batches::Batch;
 pub use batches::LeftBatches;
-use psd_physics::impact::summary::Wanted;
+use psd_plan::formula::ResultReference;
 use psd_plan::record::Record;
 use psd_plan::{DecisionRule, Plan};
 use psd_rig::virtual_rig;
@@ -39,8 +39,8 @@ pub struct Simulation<'a> {
     study: &'a Definition,
     readout: Readout,
     is_batched: bool,
-    /// What batches have to find.
-    wanted: Wanted,
+    /// The results that are read of a run.
+    references: Vec<ResultReference>,
     left: LeftBatches,
     /// Formulas of the study contain varied values.
     with_studies: bool,
@@ -62,7 +62,7 @@ impl<'a> Simulation<'a> {
             study,
             readout,
             is_batched,
-            wanted: batches::wanted(&references),
+            references,
             left: LeftBatches::default(),
             with_studies: false,
         };
@@ -174,7 +174,7 @@ impl<'a> Simulation<'a> {
         let Some((first, decides_all)) = first else {
             return rows;
         };
-        batch.run(&first, self.wanted, |at, record| {
+        batch.run(&first, &self.references, |at, record| {
             let inputs = std::mem::take(&mut rows[at].inputs);
             let kept = match record {
                 Ok(record) if decides_all => self.readout.read(&first, record),

@@ -6,7 +6,6 @@ use crate::study::answers::setting;
 use crate::study::data_set::Outcome;
 use crate::study::metadata::column;
 use crate::study::testing::{Studied, checked, plan, usual, variation};
-use psd_physics::impact::summary::Wanted;
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::Source;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
@@ -133,18 +132,23 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
         let alone = simulated_alone(&plan);
         let mut batch = Batch::default();
         batch.add(0, impact);
+        let all = alone.procedures[0].results.iter();
+        let references: Vec<ResultReference> = all
+            .filter(|result| crate::procedures::impact::batched::gives(result.name))
+            .map(|result| ResultReference {
+                procedure: ProcedureId(0),
+                name: result.name,
+                part: ResultPart::Value,
+            })
+            .collect();
+        assert!(references.len() > 10);
         let mut found = None;
-        batch.run(&plan, Wanted::ALL, |_, record| {
+        batch.run(&plan, &references, |_, record| {
             found = Some(record.unwrap().clone());
         });
         let found = found.unwrap();
-        let names: Vec<&str> = found.procedures[0]
-            .results
-            .iter()
-            .map(|result| result.name)
-            .filter(|name| crate::procedures::impact::batched::gives(name))
-            .collect();
-        for name in names {
+        assert_eq!(found.procedures[0].results.len(), references.len());
+        for ResultReference { name, .. } in references {
             let number = |record: &psd_plan::record::Record| {
                 record.procedures[0].number(name).map(f64::to_bits)
             };

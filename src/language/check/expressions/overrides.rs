@@ -36,6 +36,30 @@ pub enum InputLocation<'a> {
     },
 }
 
+/// A setting whose name has a point, and where the plan writes the value that it replaces.
+pub struct LocatedSetting<'a> {
+    name: &'a str,
+    setting: &'a Setting,
+    location: Result<InputLocation<'a>, NoInput>,
+}
+
+impl<'a> LocatedSetting<'a> {
+    /// All of these settings whose names have a point.
+    #[must_use]
+    pub fn all(scope: &Scope<'a>, settings: &'a BTreeMap<String, Setting>) -> Vec<Self> {
+        let with_points = settings.iter().filter(|(name, _)| name.contains('.'));
+        let located = with_points.map(|(name, setting)| {
+            let path: Vec<&str> = name.split('.').collect();
+            Self {
+                name,
+                setting,
+                location: find_input(scope, &path),
+            }
+        });
+        located.collect()
+    }
+}
+
 /// An unknown first word.
 pub struct UnknownName {
     pub name: String,
@@ -405,31 +429,31 @@ struct SettingWithoutInput<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// Takes the settings whose names have a point. Those that name nothing are errors, and so are numbers of a real rig: its scale factors
-    /// and times are in the plan alone.
-    pub fn override_fields(&mut self, settings: &'a BTreeMap<String, Setting>) {
-        for (name, setting) in settings.iter().filter(|(name, _)| name.contains('.')) {
-            let path: Vec<&str> = name.split('.').collect();
-            match find_input(self.scope, &path) {
+    /// Takes these settings. Those that name nothing are errors, and so are numbers of a real rig: its scale factors and times are in the
+    /// plan alone.
+    pub fn override_fields(&mut self, settings: &[LocatedSetting<'a>]) {
+        for LocatedSetting {
+            name,
+            setting,
+            location,
+        } in settings
+        {
+            match location {
                 Ok(InputLocation::Field { block, .. })
-                    if self.scope.blocks[block].kind.kind == Kind::Rig
-                        && rig::kind(self, block) == Some(RigKind::Real) =>
+                    if self.scope.blocks[*block].kind.kind == Kind::Rig
+                        && rig::kind(self, *block) == Some(RigKind::Real) =>
                 {
                     self.report(SettingOfARealRig { name });
                 }
                 Ok(InputLocation::Field { written, .. }) => {
-                    self.overrides
-                        .insert(written.span, (name.as_str(), setting));
+                    self.overrides.insert(written.span, (name, setting));
                 }
                 Ok(InputLocation::Parameter(_)) => {}
                 Ok(InputLocation::Result {
                     reference,
                     dimension,
-                }) => self.override_result(name, setting, reference, dimension),
-                Err(reason) => self.report(SettingWithoutInput {
-                    name,
-                    reason: &reason,
-                }),
+                }) => self.override_result(name, setting, *reference, *dimension),
+                Err(reason) => self.report(SettingWithoutInput { name, reason }),
             }
         }
     }

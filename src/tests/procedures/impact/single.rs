@@ -322,6 +322,54 @@ fn inspections_come_while_it_runs_and_change_nothing() {
     assert_eq!(steps(&record), steps(&run_unwatched(&plan(impact()))));
 }
 
+/// A run with an inspection takes its steps one by one, another run on an ideal rig takes them in one go: to its end, and to a limit that
+/// stops it at a target or at a reading.
+#[test]
+fn an_impact_in_one_go_has_the_steps_of_the_impact_step_by_step() {
+    let bounded = |limits: fn(&mut psd_plan::Limits) -> &mut Interval, high: f64| {
+        let mut bounded = psd_plan::Limits::NONE;
+        *limits(&mut bounded) = Interval { low: -high, high };
+        bounded
+    };
+    for (limits, stops) in [
+        (psd_plan::Limits::NONE, false),
+        (bounded(|limits| &mut limits.displacement, 0.1), true),
+        (bounded(|limits| &mut limits.increment, 0.009), true),
+        (bounded(|limits| &mut limits.force, 30.0), true),
+    ] {
+        for contact in [
+            impact().contact,
+            Contact::Limit {
+                force: constant(60.0),
+            },
+        ] {
+            let runs = |inspect: Vec<InspectTrigger>| {
+                let mut plan = plan(Impact {
+                    contact: contact.clone(),
+                    stepping: Stepping {
+                        inspect,
+                        ..every(0.01)
+                    },
+                    ..impact()
+                });
+                plan.limits = limits;
+                run_unwatched(&plan)
+            };
+            let [one, other] = [Vec::new(), vec![InspectTrigger::At(1e6)]].map(runs);
+            assert_eq!(
+                one.outcome != Outcome::Completed,
+                stops,
+                "{:?}",
+                one.outcome
+            );
+            assert_eq!((&one.outcome, &one.events), (&other.outcome, &other.events));
+            assert_eq!(steps(&one), steps(&other));
+            let results = |record: &Record| format!("{:?}", record.procedures[0].results);
+            assert_eq!(results(&one), results(&other));
+        }
+    }
+}
+
 #[test]
 fn noise_is_declared_to_the_tangent_stiffness_and_a_seed_repeats_the_run() {
     let mut noisy = plan(impact());
