@@ -7,7 +7,7 @@ use crate::codes::{E404, E405};
 use crate::syntax::ast::Expr;
 use psd_physics::structure::section::Section;
 use psd_plan::formula::{Formula, ProcedureId, ResultReference};
-use psd_plan::{Behaviour, Frame};
+use psd_plan::{Behaviour, Frame, Interval};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Sources, Span};
 use psd_text::units::{Dimension, Quantity};
@@ -40,8 +40,16 @@ pub struct FixedValues {
     /// Those of other nodes are there too, and are evaluated again.
     known: BTreeMap<Node, Known>,
     checks: u64,
+    own_values: BTreeMap<usize, Traced<Option<OwnValue>>>,
     frames: BTreeMap<usize, Reread<Frame>>,
     behaviours: BTreeMap<usize, Reread<Behaviour>>,
+}
+
+/// The value that the plan itself gives a parameter, and its bounds.
+#[derive(Clone)]
+pub struct OwnValue {
+    pub typed: Typed,
+    pub bounds: Interval,
 }
 
 /// A node that is evaluated.
@@ -119,6 +127,8 @@ pub struct Checker<'a> {
     pub loader: &'a Loader<'a>,
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
+    /// Those of parameters, by their index among the values; None of one with an error.
+    pub own_values: BTreeMap<usize, Traced<Option<OwnValue>>>,
     /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
     pub frames: BTreeMap<usize, Reread<Frame>>,
     /// Restoring-force models of the other specimens, likewise.
@@ -251,6 +261,7 @@ impl<'a> Checker<'a> {
             scope,
             loader,
             data,
+            own_values: BTreeMap::new(),
             frames,
             behaviours,
             sections: BTreeMap::new(),
@@ -343,10 +354,11 @@ impl<'a> Checker<'a> {
         let FixedValues {
             known,
             checks,
+            own_values,
             frames,
             behaviours,
         } = fixed;
-        (self.known, self.checks) = (known, checks);
+        (self.known, self.checks, self.own_values) = (known, checks, own_values);
         (self.frames, self.behaviours) = (frames, behaviours);
     }
 
@@ -355,9 +367,11 @@ impl<'a> Checker<'a> {
         let mut fixed = FixedValues {
             known: std::mem::take(&mut self.known),
             checks: self.checks + 1,
+            own_values: std::mem::take(&mut self.own_values),
             frames: std::mem::take(&mut self.frames),
             behaviours: std::mem::take(&mut self.behaviours),
         };
+        fixed.own_values.retain(|_, own| own.is_fixed());
         fixed.frames.retain(|_, frame| frame.is_fixed());
         fixed.behaviours.retain(|_, behaviour| behaviour.is_fixed());
         fixed

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::check::checker::{Checker, Context, Reads, Shape, Typed};
+use crate::check::checker::{Checker, Context, OwnValue, Reads, Shape, Typed};
 use crate::check::scope::{DeclaredValue, Setting};
 use crate::check::violations::{Mismatched, NotFinite, UnknownParameter, WrongDimensionOfQuantity};
 use crate::check::wording::shown;
@@ -149,6 +149,13 @@ struct SettingOutOfRange<'a> {
     bounds_at: Span,
 }
 
+/// Where the value of a parameter is.
+const OF_PARAMETER: Context = Context {
+    entry: None,
+    reads: Reads::Nothing("a parameter"),
+    critical: false,
+};
+
 impl<'a> Checker<'a> {
     /// The value of a declaration; for a parameter that is set, the value given.
     pub fn value_of_declaration(&mut self, index: usize) -> Option<Typed> {
@@ -166,21 +173,27 @@ impl<'a> Checker<'a> {
             }
             return self.value(declared.value, context);
         }
-        let context = Context {
-            entry: None,
-            reads: Reads::Nothing("a parameter"),
-            critical: false,
-        };
-        let own = self.single(declared.value, context);
+        let work = |checker: &mut Checker<'a>| checker.own_value(declared);
+        let OwnValue { typed: own, bounds } =
+            self.once_in(|checker| &mut checker.own_values, index, work)?;
+        match declared.setting {
+            None => Some(own),
+            Some(setting) => self.value_of_setting(declared, setting, &own, bounds),
+        }
+    }
+
+    /// The value that the plan itself gives a parameter, and its bounds. They read nothing else of the plan.
+    fn own_value(&mut self, declared: &DeclaredValue<'a>) -> Option<OwnValue> {
+        let own = self.single(declared.value, OF_PARAMETER);
         let bounds = declared
             .bounds
-            .map(|bounds| self.bounds_of_parameter(bounds, context, own.as_ref()));
-        let own = own?;
+            .map(|bounds| self.bounds_of_parameter(bounds, OF_PARAMETER, own.as_ref()));
+        let typed = own?;
         let bounds = match bounds {
             Some(bounds) => bounds?,
             None => Interval::ALL,
         };
-        let value = own.constant()?;
+        let value = typed.constant()?;
         if !bounds.contains(value) {
             let span = declared.value.span;
             return self.fail(ParameterOutOfBounds {
@@ -188,13 +201,10 @@ impl<'a> Checker<'a> {
                 text: self.text(span),
                 span,
                 bounds,
-                dimension: own.dimension,
+                dimension: typed.dimension,
             });
         }
-        match declared.setting {
-            None => Some(own),
-            Some(setting) => self.value_of_setting(declared, setting, context, &own, bounds),
-        }
+        Some(OwnValue { typed, bounds })
     }
 
     /// The value given from outside the plan, if it has the dimension of the parameter's own and is within its bounds.
@@ -202,14 +212,13 @@ impl<'a> Checker<'a> {
         &mut self,
         declared: &'a DeclaredValue<'a>,
         setting: &'a Setting,
-        context: Context,
         own: &Typed,
         bounds: Interval,
     ) -> Option<Typed> {
         let name = &declared.name.node;
         let set = match setting {
             Setting::Written(written) => {
-                let set = self.single(written, context)?;
+                let set = self.single(written, OF_PARAMETER)?;
                 self.expect(set, own.dimension, name, written)?
             }
             Setting::Bound(input) => {
