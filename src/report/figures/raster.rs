@@ -47,8 +47,11 @@ pub(crate) fn png(svg: &str) -> Result<Vec<u8>, String> {
     let bytes = 4 * size.width() as usize * size.height() as usize;
     let scale = Transform::from_scale(f32::from(SCALE), f32::from(SCALE));
     PIXELS.with_borrow_mut(|pixels| {
-        pixels.resize(bytes, 0);
-        let mut sheet = PixmapMut::from_bytes(pixels, size.width(), size.height())
+        if pixels.len() < bytes {
+            // Memory that the system gives is zero already.
+            *pixels = vec![0; bytes];
+        }
+        let mut sheet = PixmapMut::from_bytes(&mut pixels[..bytes], size.width(), size.height())
             .ok_or("a sheet without an area")?;
         sheet.fill(Color::WHITE);
         resvg::render(&drawing, scale, &mut sheet);
