@@ -32,33 +32,30 @@ pub fn simulate<S: RestoringForce, K: Sink>(
 ) -> Result<ImpactState, ImpactError> {
     let solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
     let read = |[target, _]: [f64; 2]| [target, specimen.move_to(target)];
-    let mut caller = Uninterrupted { read, sink };
-    Ok(from_start(input, solver, until, steps, &mut caller))
+    Ok(from_start(input, solver, until, steps, read, sink))
 }
 
-/// An impact on one degree of freedom from its start, of which `solver` is at the start, `steps` steps at most. Gives its end.
-pub(crate) fn from_start<C: Caller>(
+/// An impact on one degree of freedom from its start, of which `solver` is at the start, `steps` steps at most. For a target \[m\] and the
+/// predicted velocity there \[m/s\], `read` gives displacement \[m\] and force \[N\].
+pub(crate) fn from_start<K: Sink>(
     input: &ImpactInput,
     mut solver: ImpactSolver,
     until: Option<Until>,
     steps: u64,
-    caller: &mut C,
+    read: impl FnMut([f64; 2]) -> [f64; 2],
+    sink: &mut K,
 ) -> ImpactState {
-    if let Some((_, last)) = steps_in_one_go(input, &solver, until, steps, caller) {
+    let mut caller = Uninterrupted { read, sink };
+    if let Some((_, last)) = steps_in_one_go(input, &solver, until, steps, &mut caller) {
         return last;
     }
-    for _ in 0..steps {
+    let Uninterrupted { mut read, sink } = caller;
+    let read = |solver: &mut ImpactSolver| {
         let mut velocity = [0.0];
         solver.predicted_velocity(&mut velocity);
-        let Some([displacement, force]) = caller.read([solver.predict(), velocity[0]]) else {
-            break;
-        };
-        solver.complete(displacement, force);
-        let over = until.is_some_and(|until| solver.over(until));
-        if !caller.end(solver.structure(), solver.state(), over) || over {
-            break;
-        }
-    }
+        read([solver.predict(), velocity[0]])
+    };
+    solver.run(until, steps, read, sink);
     *solver.state()
 }
 
@@ -108,9 +105,11 @@ pub fn steps_in_one_go<C: Caller>(
     let exact = input.integrator == Integrator::Tangent
         && input.noise == DeclaredNoise::NONE
         && !input.i_modification;
+    if !exact {
+        return None;
+    }
     let start = solver.state();
     let last = match input.law {
-        _ if !exact => return None,
         ContactLaw::Rigid => run::<_, false>(input, start, ends_at_stop, steps, caller),
         ContactLaw::Limit { .. } => run::<_, true>(input, start, ends_at_stop, steps, caller),
         _ => return None,
@@ -349,11 +348,7 @@ mod tests {
                 velocities.push(velocity);
                 read(target)
             };
-            let mut caller = Uninterrupted {
-                read: reads,
-                sink: &mut ends,
-            };
-            from_start(&input, solver(), None, 700, &mut caller);
+            from_start(&input, solver(), None, 700, reads, &mut ends);
             let (mut solver, mut own, mut predicted) = (solver(), Vec::new(), Vec::new());
             for _ in 0..700 {
                 let mut velocity = [0.0];

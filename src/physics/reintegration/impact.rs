@@ -7,12 +7,12 @@
     reason = "a part of the loop over the steps, which computes what its parts read"
 )]
 
-use super::recorded_path::{Reading, RecordedPath, Retrace};
+use super::recorded_path::{Reading, RecordedPath};
 use crate::impact::peaks::farther;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
-use crate::impact::{
-    Caller, ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, from_start,
-};
+use std::cell::Cell;
+
+use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, from_start};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
 
@@ -70,13 +70,26 @@ pub fn rerun(
         displacement,
         force,
     };
-    let readings = Retraced {
-        retrace,
-        unchanged: readings.leaves_unchanged(0),
-        perturbation: readings,
-        reading: 0,
-    };
-    run(input, until, steps * u64::from(finer), start, readings)
+    let mut reading = 0;
+    // Each step waits for its reading, so the arithmetic of unchanged instruments is left out.
+    let unchanged = readings.leaves_unchanged(0);
+    run(
+        input,
+        until,
+        steps * u64::from(finer),
+        start,
+        |target, velocity| {
+            if unchanged {
+                return (retrace.pass(target, velocity), retrace.departed());
+            }
+            reading += 1;
+            let read = retrace.pass(
+                readings.recorded_position(0, target),
+                readings.recorded(0, velocity),
+            );
+            (readings.read(reading, 0, 1, read), retrace.departed())
+        },
+    )
 }
 
 /// Predicted velocities at the targets of a run with continuous motion \[m/s\]; `readings` are all readings of that run.
@@ -110,104 +123,38 @@ pub fn integrate(
     until: Until,
     steps: u64,
     start: Reading,
-    read: impl FnMut(f64, f64) -> (f64, f64),
+    mut read: impl FnMut(f64, f64) -> (f64, f64),
 ) -> Result<Outcome, ImpactError> {
-    run(input, until, steps, start, Measured(read))
+    run(input, until, steps, start, |target, velocity| {
+        (read(target, velocity), false)
+    })
 }
 
-/// Reads at the targets of a re-integration.
-trait Read {
-    /// Displacement \[m\] and force \[N\] at a target \[m\] with its predicted velocity \[m/s\], and whether the path has departed from its
-    /// record.
-    fn read(&mut self, target: f64, velocity: f64) -> ((f64, f64), bool);
-}
-
-/// Reads from the record, with its instruments perturbed.
-struct Retraced<'a> {
-    retrace: Retrace<'a>,
-    perturbation: &'a Perturbation,
-    /// Each step waits for its reading, so the arithmetic of unchanged instruments is left out.
-    unchanged: bool,
-    /// Number of the last reading.
-    reading: u64,
-}
-
-impl Read for Retraced<'_> {
-    #[inline(always)]
-    fn read(&mut self, target: f64, velocity: f64) -> ((f64, f64), bool) {
-        let Self {
-            retrace,
-            perturbation,
-            unchanged,
-            reading,
-        } = self;
-        if *unchanged {
-            return (retrace.pass(target, velocity), retrace.departed());
-        }
-        *reading += 1;
-        let read = retrace.pass(
-            perturbation.recorded_position(0, target),
-            perturbation.recorded(0, velocity),
-        );
-        let read = perturbation.read(*reading, 0, 1, read);
-        (read, retrace.departed())
-    }
-}
-
-/// Reads as a function gives it.
-struct Measured<R>(R);
-
-impl<R: FnMut(f64, f64) -> (f64, f64)> Read for Measured<R> {
-    fn read(&mut self, target: f64, velocity: f64) -> ((f64, f64), bool) {
-        (self.0(target, velocity), false)
-    }
-}
-
+/// As [`integrate`], for a path that also reports whether it has departed from its record.
 fn run(
     input: &ImpactInput,
     until: Until,
     steps: u64,
     first: Reading,
-    read: impl Read,
+    mut read: impl FnMut(f64, f64) -> ((f64, f64), bool),
 ) -> Result<Outcome, ImpactError> {
     let solver = ImpactSolver::new(input, first.target, first.force)?;
     let start = ImpactState {
         measured_displacement: first.displacement,
         ..*solver.state()
     };
-    let mut reintegration = Reintegration {
-        read,
-        departed: false,
+    let departed = Cell::new(false);
+    let mut results = Departing {
         results: ImpactResults::new(input, until, &start),
+        departed: &departed,
     };
-    from_start(input, solver, Some(until), steps, &mut reintegration);
-    Ok(reintegration.results.finish())
-}
-
-/// A re-integration in progress. It keeps the results as they were before the path departed from its record.
-struct Reintegration<R> {
-    read: R,
-    /// Whether the reading of the step in progress departed.
-    departed: bool,
-    results: ImpactResults,
-}
-
-impl<R: Read> Caller for Reintegration<R> {
-    #[inline(always)]
-    fn read(&mut self, [target, velocity]: [f64; 2]) -> Option<[f64; 2]> {
-        let (read, departed) = self.read.read(target, velocity);
-        self.departed = departed;
-        Some(read.into())
-    }
-
-    #[inline(always)]
-    fn end(&mut self, _: &State<f64>, now: &ImpactState, over: bool) -> bool {
-        if self.departed {
-            self.results.departs();
-        }
-        self.results.take(now, over);
-        true
-    }
+    let measure = |[target, velocity]: [f64; 2]| {
+        let (reading, has_departed) = read(target, velocity);
+        departed.set(has_departed);
+        reading.into()
+    };
+    from_start(input, solver, Some(until), steps, measure, &mut results);
+    Ok(results.results.finish())
 }
 
 /// Results of an impact, collected from the ends of its steps.
@@ -254,6 +201,23 @@ impl StepEnd {
             restoring: state.energies.restoring,
             damping: state.energies.damping,
         }
+    }
+}
+
+/// Keeps the results as they were before the path departed from its record.
+struct Departing<'a> {
+    results: ImpactResults,
+    /// Whether the reading of the step in progress departed.
+    departed: &'a Cell<bool>,
+}
+
+impl<V> Sink<V> for Departing<'_> {
+    #[inline(always)]
+    fn push(&mut self, _: &State<V>, now: &ImpactState, over: bool) {
+        if self.departed.get() {
+            self.results.departs();
+        }
+        self.results.take(now, over);
     }
 }
 
@@ -307,13 +271,8 @@ impl ImpactResults {
     /// From the next step on the path differs from the record.
     pub fn departs(&mut self) {
         if self.before_departure.is_none() {
-            self.keep_values();
+            self.before_departure = Some(self.values(&self.summary.clone().finish()));
         }
-    }
-
-    #[cold]
-    fn keep_values(&mut self) {
-        self.before_departure = Some(self.values(&self.summary.clone().finish()));
     }
 
     /// The results of the steps so far.

@@ -414,11 +414,7 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step, which is passed with a velocity \[m/s\].
-    #[expect(
-        clippy::inline_always,
-        reason = "a call would take the numbers of its caller out of the registers"
-    )]
-    #[inline(always)]
+    #[inline]
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let before = self.step;
         self.own_step += 1;
@@ -433,7 +429,6 @@ impl<'a> Retrace<'a> {
         self.pass_anywhere(target, velocity, before)
     }
 
-    #[cold]
     fn pass_anywhere(&mut self, target: f64, velocity: f64, before: usize) -> (f64, f64) {
         let speed = self
             .path
@@ -451,8 +446,7 @@ impl<'a> Retrace<'a> {
     }
 
     /// Displacement and force at a target \[m\] on the present piece; None: it is not there, or the actuator does not stop at it.
-    #[expect(clippy::inline_always, reason = "as `Retrace::pass`")]
-    #[inline(always)]
+    #[inline]
     fn read_along(&mut self, target: f64) -> Option<(f64, f64)> {
         let along = self.along.as_mut()?;
         let Along {
