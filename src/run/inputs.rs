@@ -28,7 +28,7 @@ impl<'record> Inputs<'record> {
         Self {
             results,
             procedure,
-            recorded: Vec::with_capacity(8),
+            recorded: Vec::new(),
             moved: false,
             lift: 0.0,
             observations: Vec::new(),

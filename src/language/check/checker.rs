@@ -127,7 +127,7 @@ pub struct Checker<'a> {
     pub loader: &'a Loader<'a>,
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
-    /// Those of parameters, by their index among the values; None of one with an error.
+    /// The plan's own values of its parameters, by their index among the values; None of one with an error.
     pub own_values: BTreeMap<usize, Traced<Option<OwnValue>>>,
     /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
     pub frames: BTreeMap<usize, Reread<Frame>>,

@@ -306,25 +306,36 @@ struct Kept<'a> {
     summary: &'a mut StruckSummary,
 }
 
-impl Kept<'_> {
+/// The end of a step.
+struct EndOfImpactStep<'a, 'kept, V> {
+    structure: &'a State<V>,
+    state: &'a ImpactState,
+    kept: &'a mut Kept<'kept>,
+}
+
+impl<V: HasTangents> EndOfStep for EndOfImpactStep<'_, '_, V> {
     #[inline(always)]
-    fn sum_up<V: HasTangents>(&mut self, structure: &State<V>, state: &ImpactState) -> Balance {
-        self.summary.push(structure, state);
+    fn axes(&self) -> AxesState<'_> {
+        AxesState::of(self.structure)
+    }
+
+    #[inline(always)]
+    fn sum_up(&mut self) -> Balance {
+        self.kept.summary.push(self.structure, self.state);
         Balance {
-            error: state.energies.error,
-            input: state.input,
+            error: self.state.energies.error,
+            input: self.state.input,
         }
     }
 
     #[inline(always)]
-    fn keep<V: HasTangents>(
-        &mut self,
-        structure: &State<V>,
-        state: &ImpactState,
-        axes: &[Tracking],
-        wall_time: f64,
-    ) {
-        self.steps.push(&ImpactStep {
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        let Self {
+            structure,
+            state,
+            kept,
+        } = self;
+        kept.steps.push(&ImpactStep {
             step: state.step,
             time: state.time,
             wall_time,
@@ -343,36 +354,12 @@ impl Kept<'_> {
             energies: state.energies,
             tracking: Tracking::together(axes),
         });
-        if let Some(floors) = self.summary.floors() {
-            self.floors.push(FloorStep {
-                floors: FloorMotion::of_state(structure, axes),
+        if let Some(floors) = kept.summary.floors() {
+            kept.floors.push(FloorStep {
+                floors: FloorMotion::of_state(*structure, axes),
                 storey_energy: floors.storey_energy().to_vec(),
             });
         }
-    }
-}
-
-/// The end of a step.
-struct EndOfImpactStep<'a, 'kept, V> {
-    structure: &'a State<V>,
-    state: &'a ImpactState,
-    kept: &'a mut Kept<'kept>,
-}
-
-impl<V: HasTangents> EndOfStep for EndOfImpactStep<'_, '_, V> {
-    #[inline(always)]
-    fn axes(&self) -> AxesState<'_> {
-        AxesState::of(self.structure)
-    }
-
-    #[inline(always)]
-    fn sum_up(&mut self) -> Balance {
-        self.kept.sum_up(self.structure, self.state)
-    }
-
-    #[inline(always)]
-    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
-        self.kept.keep(self.structure, self.state, axes, wall_time);
     }
 
     #[inline(always)]
@@ -414,19 +401,27 @@ impl Caller for IdealCaller<'_, '_, '_, '_> {
     }
 }
 
+impl<'a, V: HasTangents> Struck<'a, V> {
+    fn end(&mut self) -> EndOfImpactStep<'_, 'a, V> {
+        EndOfImpactStep {
+            structure: self.solver.structure(),
+            state: self.solver.state(),
+            kept: &mut self.kept,
+        }
+    }
+}
+
 impl<V: HasTangents> EndOfStep for Struck<'_, V> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.structure())
     }
 
     fn sum_up(&mut self) -> Balance {
-        let (structure, state) = (self.solver.structure(), self.solver.state());
-        self.kept.sum_up(structure, state)
+        self.end().sum_up()
     }
 
     fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
-        let (structure, state) = (self.solver.structure(), self.solver.state());
-        self.kept.keep(structure, state, axes, wall_time);
+        self.end().keep(axes, wall_time);
     }
 
     fn is_struck(&self) -> bool {
