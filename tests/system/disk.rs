@@ -7,7 +7,7 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::needs;
-use crate::stage::{PSD, Stage, finish, signal, start, wait};
+use crate::stage::{PSD, Stage, finish, signal, start, strace, wait};
 
 /// The last motion command is the hold.
 fn held(stage: &Stage) {
@@ -27,19 +27,13 @@ fn a_sync_that_fails_once_ends_the_run_and_is_not_tried_again() {
     }
     let stage = Stage::new();
     let trace = stage.path("trace");
-    let mut command = Command::new("strace");
+    let mut command = strace("fdatasync", "error=EIO:when=40");
     command
-        .args(["-f", "-o"])
+        .arg("-o")
         .arg(&trace)
         .arg("-P")
-        .arg(stage.journal());
-    command.args([
-        "-e",
-        "trace=fdatasync",
-        "-e",
-        "inject=fdatasync:error=EIO:when=40",
-        PSD,
-    ]);
+        .arg(stage.journal())
+        .arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(3), "{}", ran.output);
@@ -95,17 +89,11 @@ fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
     }
     for error in ["ENOSPC", "EFBIG", "EDQUOT", "EIO"] {
         let stage = Stage::new();
-        let mut command = Command::new("strace");
+        let mut command = strace("write", &format!("error={error}:when=70"));
         command
-            .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
-            .arg(stage.journal());
-        command.args([
-            "-e",
-            "trace=write",
-            "-e",
-            &format!("inject=write:error={error}:when=70"),
-            PSD,
-        ]);
+            .args(["-o", "/dev/null", "-P"])
+            .arg(stage.journal())
+            .arg(PSD);
         stage.run_arguments(&mut command, &["--yes"]);
         let ran = wait(&mut command);
         assert_eq!(ran.code, Some(3), "{error}: {}", ran.output);
@@ -125,17 +113,11 @@ fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
         return;
     }
     let stage = Stage::new();
-    let mut command = Command::new("strace");
+    let mut command = strace("write", "error=EINTR:when=2+2");
     command
-        .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
-        .arg(stage.journal());
-    command.args([
-        "-e",
-        "trace=write",
-        "-e",
-        "inject=write:error=EINTR:when=2+2",
-        PSD,
-    ]);
+        .args(["-o", "/dev/null", "-P"])
+        .arg(stage.journal())
+        .arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(0), "{}", ran.output);
@@ -148,17 +130,11 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
         return;
     }
     let stage = Stage::new();
-    let mut command = Command::new("strace");
+    let mut command = strace("write", "retval=2:when=70");
     command
-        .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
-        .arg(stage.journal());
-    command.args([
-        "-e",
-        "trace=write",
-        "-e",
-        "inject=write:retval=2:when=70",
-        PSD,
-    ]);
+        .args(["-o", "/dev/null", "-P"])
+        .arg(stage.journal())
+        .arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert!(

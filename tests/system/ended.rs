@@ -7,7 +7,7 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::needs;
-use crate::stage::{Ended, PSD, Stage, finish, let_it_trip, signal, start, wait, watched};
+use crate::stage::{Ended, PSD, Stage, finish, let_it_trip, signal, start, strace, wait, watched};
 
 #[test]
 fn by_an_abort_in_any_phase() {
@@ -53,11 +53,8 @@ fn aborted(word: Signal, moves: usize) {
 fn threads_of_a_run() -> usize {
     let stage = Stage::new();
     let trace = stage.path("threads");
-    let mut command = Command::new("strace");
-    command
-        .args(["-f", "-e", "trace=clone3", "-o"])
-        .arg(&trace)
-        .arg(PSD);
+    let mut command = strace("clone3", "");
+    command.arg("-o").arg(&trace).arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     assert_eq!(wait(&mut command).code, Some(0));
     std::fs::read_to_string(trace)
@@ -68,13 +65,8 @@ fn threads_of_a_run() -> usize {
 
 /// The run without its n-th thread: the standard library panics, but a run that does not need the thread continues.
 fn without_thread(stage: &Stage, number: usize) -> Ended {
-    let mut command = Command::new("strace");
-    command.args(["-f", "-o", "/dev/null", "-e", "trace=clone3,clone"]);
-    command.args([
-        "-e",
-        &format!("inject=clone3:error=EAGAIN:when={number}"),
-        PSD,
-    ]);
+    let mut command = strace("clone3", &format!("error=EAGAIN:when={number}"));
+    command.args(["-o", "/dev/null", PSD]);
     stage.run_arguments(&mut command, &["--yes"]);
     wait(&mut command)
 }

@@ -125,14 +125,14 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
 /// Duration of a step of [`continuous`] \[s\].
 const CONTINUOUS_STEP: u64 = 15;
 
-/// The same plan with continuous motion: four steps. The rig waits a fifth of a step, 3 s, for a late target: a busy machine has been
+/// The same plan with continuous motion: three steps. The rig waits a fifth of a step, 3 s, for a late target: a busy machine has been
 /// late by 2 s. In a larger part of a step it would move beyond its last commanded move, and psd does not go on from there.
 fn continuous() -> Stage {
     let mode = format!(
         "  time_step     = 10 ms\n  mode          = continuous(time_scale: {})",
         100 * CONTINUOUS_STEP
     );
-    let short = ("0.4 s\n}", "0.04 s\n}");
+    let short = ("0.4 s\n}", "0.03 s\n}");
     let plan = plan_with(&[("  time_step     = 10 ms", &mode), short]);
     scripted(
         &plan,
@@ -233,7 +233,7 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
     let (whole, cut_off) = (continuous(), continuous());
     std::thread::scope(|scope| {
         scope.spawn(|| succeeded(&wait(&mut whole.run_with(&["--yes"]))));
-        // Four moves of the pre-test check, two of the beginning, two of each step: in the second of four.
+        // Four moves of the pre-test check, two of the beginning, two of each step: in the second of three.
         killed(&cut_off, 9);
         // It receives no next target: it holds automatically after the end of its path.
         std::thread::sleep(std::time::Duration::from_secs(CONTINUOUS_STEP + 4));

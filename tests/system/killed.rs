@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::needs;
-use crate::stage::{PSD, Stage, wait};
+use crate::stage::{PSD, Stage, strace, wait};
 
 /// Number of concurrent runs: nearly all of their time is waiting.
 const AT_ONCE: usize = 8;
@@ -42,15 +42,8 @@ fn killed(stage: &Stage, at: At, count: usize) -> bool {
         At::Sync => ("fdatasync", stage.journal()),
         At::Word => ("write", stage.path("rig").canonicalize().unwrap()),
     };
-    let mut command = Command::new("strace");
-    command.args(["-f", "-o", "/dev/null", "-P"]).arg(path);
-    command.args([
-        "-e",
-        &format!("trace={call}"),
-        "-e",
-        &format!("inject={call}:signal=KILL:when={count}"),
-        PSD,
-    ]);
+    let mut command = strace(call, &format!("signal=KILL:when={count}"));
+    command.args(["-o", "/dev/null", "-P"]).arg(path).arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     let ended = wait(&mut command);
     match ended.code {

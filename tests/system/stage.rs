@@ -394,6 +394,20 @@ fn without_times(path: &Path) -> String {
     text.lines().map(kept).collect()
 }
 
+/// strace of a program and all that it starts, at one kind of call, `fault` injected into it. It stops the program at no other call, but
+/// for a signal: strace sends none where it looks at one kind of call alone.
+pub fn strace(call: &str, fault: &str) -> Command {
+    let mut command = Command::new("strace");
+    command.args(["-f", "-e", &format!("trace={call}")]);
+    if !fault.contains("signal=") {
+        command.arg("--seccomp-bpf");
+    }
+    if !fault.is_empty() {
+        command.args(["-e", &format!("inject={call}:{fault}")]);
+    }
+    command
+}
+
 /// Starts a program whose output is kept until [`finish`].
 pub fn start(command: &mut Command) -> Child {
     command

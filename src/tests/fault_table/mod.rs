@@ -28,7 +28,7 @@
 //! | 18–22 | the same on one axis of two | `axes::*` |
 //! | 10, 14, 18, 25, 26 | the same in continuous mode | `continuous::*` |
 //! | 10, 12, 16, 20–22 | the same with one device per axis, a meter with several channels, several sites | `several::*` |
-//! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in separate processes |
+//! | 28 | signals, a closed terminal | `tests/system/by_signal.rs`, in separate processes |
 //! | 29 | panic, abort | `tests/system/ended.rs`, in separate processes |
 //! | 30 | a run log that contradicts itself | `forged::*`, `axes::forged_replies::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
