@@ -200,7 +200,7 @@ fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
     };
     let ((verdict, why), run) = with_duration(1.0, Until::StrikerStop);
     assert_eq!((verdict.as_str(), run), ("pass", Verdict::Pass), "{why}");
-    let ((verdict, why), run) = with_duration(120.0, Until::Duration);
+    let ((verdict, why), run) = with_duration(60.0, Until::Duration);
     assert_eq!(
         (verdict.as_str(), run),
         ("inconclusive", Verdict::Inconclusive)
