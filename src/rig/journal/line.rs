@@ -101,9 +101,9 @@ impl Line {
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
     }
 
-    /// Whether its body has these very bytes.
-    pub(super) fn has_json(&self, json: &[u8]) -> bool {
-        matches!(self.text.read(self.place(), |own| own == json), Ok(true))
+    /// Whether the bytes of its body meet this; false if they can no longer be read.
+    pub(super) fn with_json(&self, meets: impl FnOnce(&[u8]) -> bool) -> bool {
+        matches!(self.text.read(self.place(), meets), Ok(true))
     }
 
     /// Where its body is in the text.
@@ -177,7 +177,7 @@ pub enum Unsound {
 /// It is not a line, or differs from the line that was written.
 pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
     let text = str::from_utf8(line).map_err(|_| Unsound::Shape)?;
-    if !line.iter().all(|byte| (b' '..=b'~').contains(byte)) {
+    if !all(line, |byte| (b' '..=b'~').contains(&byte)) {
         return Err(Unsound::Shape);
     }
     let shape = || {
@@ -209,9 +209,15 @@ pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
 
 fn is_hexadecimal(word: &str, digits: usize) -> bool {
     word.len() == digits
-        && word
-            .bytes()
-            .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+        && all(
+            word.as_bytes(),
+            |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'),
+        )
+}
+
+/// Whether all bytes are so. It looks at every one, so that it can look at several together.
+fn all(bytes: &[u8], is_so: impl Fn(u8) -> bool) -> bool {
+    bytes.iter().fold(true, |all, byte| all & is_so(*byte))
 }
 
 /// Decimal digits as the writer writes them: no sign, no leading zero.
