@@ -185,7 +185,11 @@ impl HasTangents for Vec<f64> {
         form.set_contact_force(force);
     }
 
+    /// The tangent of the only storey is a ratio, as that of one degree of freedom.
     fn follow(form: &mut StepForm<Self>, tangents: &StoreyTangents) {
+        if tangents.only.is_some() && !form.is_divided {
+            return;
+        }
         // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
         // remains.
         let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
