@@ -80,6 +80,8 @@ phrases! {
     WORST_COLUMNS = ["Run", "Requirement", "Value", "Settings"];
     fn worst_of(label) = "Worst runs: {label}";
     REPRODUCE = "A run is reproduced bit for bit by ";
+    SERIES = "Here the condition of a series of impacts is decided on its value alone. By that command it is decided with U: the series \
+        ends earlier where U is withheld, or where the value is inside the guard band.";
     NO_WORST = "No run is listed: every run meets this requirement, and it does not compare a single result.";
 
     // Fragility.

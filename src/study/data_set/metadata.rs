@@ -35,6 +35,8 @@ pub struct Metadata {
     pub correlations: Vec<String>,
     /// Some inputs are not independent of each other.
     pub is_correlated: bool,
+    /// The plan has a series of impacts, whose `while` every run decides on its value alone.
+    pub has_series: bool,
     /// Level of confidence of its intervals, such as 0.95.
     pub confidence: f64,
     /// Most runs of the study; for a fragility the runs of all stripes.

@@ -29,6 +29,7 @@ pub fn metadata(first: u64) -> Metadata {
         replicates: 1,
         correlations: Vec::new(),
         is_correlated: false,
+        has_series: false,
         confidence: 0.95,
         at_most: 1_000_000,
         first,

@@ -63,6 +63,9 @@ pub fn worst(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::WORST));
     let command = format!("psd run {} --set …", source.metadata.plan);
     body.push(Block::note(Text::from(wording::REPRODUCE).code(command)));
+    if source.metadata.has_series {
+        body.push(Block::note(wording::SERIES));
+    }
     for (index, answer) in answers.requirements.iter().enumerate() {
         body.push(Block::part(wording::worst_of(&answer.label)));
         if answer.worst.is_empty() {

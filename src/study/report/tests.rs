@@ -100,6 +100,19 @@ fn the_box_of_the_first_page_has_the_answer() {
     }
 }
 
+/// The run that a series of the study is compared with evaluates U, which the note on the worst runs says.
+#[test]
+fn a_study_of_a_series_says_what_its_command_does_otherwise() {
+    let (metadata, answers) = study(0.05, 1000);
+    let of_series = Metadata {
+        has_series: true,
+        ..metadata.clone()
+    };
+    let note = "the condition of a series of impacts is decided on its value alone";
+    assert!(!page(&metadata, &answers).contains(note));
+    assert!(page(&of_series, &answers).contains(note));
+}
+
 #[test]
 fn an_incomplete_study_is_marked_on_its_first_page() {
     let (metadata, answers) = study(0.05, 500);

@@ -225,7 +225,8 @@ fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> StudyRow {
 }
 
 /// Runs a plan with the values of one run as `psd run` does on its virtual rig, an ideal one if it names none. The results are the same to
-/// the last bit. It keeps no run log and evaluates no uncertainty: the scatter of the study takes its place.
+/// the last bit, unless U ends a series of impacts. It keeps no run log and evaluates no uncertainty: the scatter of the study takes its
+/// place.
 fn simulated_alone(plan: &Plan) -> Record {
     let mut rig = virtual_rig(plan);
     run_with(plan, rig.as_mut(), &mut Unwatched, Keep::Results)

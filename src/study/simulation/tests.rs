@@ -4,7 +4,7 @@ use super::*;
 use crate::check::{LoadError, Options, check};
 use crate::study::answers::setting;
 use crate::study::data_set::Outcome;
-use crate::study::metadata::column;
+use crate::study::metadata::{column, study_metadata};
 use crate::study::testing::{Studied, checked, plan, usual, variation};
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::Source;
@@ -225,6 +225,37 @@ fn a_run_is_reproduced_by_its_settings() {
         assert_eq!(values(&kept.results), values(&row.results), "{settings:?}");
         assert_eq!(kept.outcomes, row.outcomes);
     }
+}
+
+/// A study evaluates no U, and decides the condition of a series on its value alone. A run that evaluates U ends where it is withheld.
+#[test]
+fn u_ends_no_series_of_a_study() {
+    let text = "param speed = 1 m/s\nparam weight = 1 kg\n\
+        specimen beam { mass = weight\nbehaviour = bilinear(stiffness: 300 N/m, yield_force: 18 N, post_yield_ratio: 0.1) }\n\
+        striker hammer { mass = 8 kg\nvelocity = 1 m/s }\n\
+        escalate up { striker = hammer\nspeeds = [0.2 * speed, 0.4 * speed, 0.6 * speed]\nwhile = max_displacement < 150 mm\n\
+        time_step = critical / 40\nduration = 0.7 s }\nrequire \"three\" up.passed >= 3\n";
+    let studied = Studied::of(text, 4);
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    for row in simulation.block(0..4) {
+        assert_eq!(
+            (&row.results[..], &row.outcomes[..]),
+            (&[Some(3.0)][..], &[Outcome::Met][..])
+        );
+    }
+    let readout = simulation.readout();
+    assert!(study_metadata("0.1.0 0", &studied.plan, &definition, readout).has_series);
+    let record = crate::run::run(
+        &studied.plan,
+        virtual_rig(&studied.plan).as_mut(),
+        &mut Unwatched,
+    );
+    let passed = record.procedures[0]
+        .results
+        .iter()
+        .find(|result| result.name == "passed");
+    assert_eq!(passed.and_then(|passed| passed.value.number()), Some(0.0));
 }
 
 /// The scale of the specimen changes all numbers of the rig and none of the prototype.
