@@ -5,7 +5,7 @@ use super::definition::Definition;
 use super::simulation::readout::Readout;
 use psd_physics::study::inputs::Source;
 use psd_plan::study::{Input, REPLICATES, Sampling, StudyEvent, Variation};
-use psd_plan::{Plan, Procedure, ProcedureKind, StudyRequirement};
+use psd_plan::{Plan, StudyRequirement};
 use psd_text::digest::sha256;
 
 /// The metadata of a study of `plan`, without runs. `version` names the build of psd that simulates them: runs of two builds are not mixed.
@@ -43,7 +43,7 @@ pub fn study_metadata(
         },
         correlations: variation.map_or_else(Vec::new, correlations),
         is_correlated: variation.is_some_and(is_correlated),
-        has_series: plan.procedures.iter().any(is_series),
+        has_series: plan.procedures.iter().any(|it| it.kind.is_series()),
         confidence: 1.0 - study.confidence.error(),
         at_most: study.runs.at_most(),
         first: 0,
@@ -56,10 +56,6 @@ pub fn study_metadata(
             StudyKind::Fragility(_) => Vec::new(),
         },
     }
-}
-
-const fn is_series(procedure: &Procedure) -> bool {
-    matches!(procedure.kind, ProcedureKind::Escalate(_))
 }
 
 /// SHA-256 of all files and settings of a plan, and of the name of its rig.

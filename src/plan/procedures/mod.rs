@@ -154,6 +154,23 @@ impl ProcedureKind {
         }
     }
 
+    /// Whether it goes on only while its own results meet a condition.
+    #[must_use]
+    pub const fn is_series(&self) -> bool {
+        match self {
+            Self::Escalate(_) => true,
+            Self::StiffnessRamp(_)
+            | Self::DampingSweep(_)
+            | Self::Impact(_)
+            | Self::Shake(_)
+            | Self::Cycle(_)
+            | Self::Unload(_)
+            | Self::Move(_)
+            | Self::Preload(_)
+            | Self::Inspect { .. } => false,
+        }
+    }
+
     /// The block's keyword, as in `summary.json`.
     #[must_use]
     pub const fn keyword(&self) -> &'static str {
