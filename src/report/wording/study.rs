@@ -42,6 +42,8 @@ phrases! {
         whole interval is on one side of the limit, otherwise undecided.";
     BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
         of runs: so they hold with this confidence.";
+    SERIES = "Here the condition of a series of impacts is decided on its value alone. A run outside of a study decides it with U: its \
+        series ends earlier where U is withheld, or where the value is inside the guard band.";
     NOT_EXACT = "The runs are not independent of each other: the interval is computed as if they were.";
 
     // Requirements of the plan.
@@ -80,8 +82,7 @@ phrases! {
     WORST_COLUMNS = ["Run", "Requirement", "Value", "Settings"];
     fn worst_of(label) = "Worst runs: {label}";
     REPRODUCE = "A run is reproduced bit for bit by ";
-    SERIES = "Here the condition of a series of impacts is decided on its value alone. By that command it is decided with U: the series \
-        ends earlier where U is withheld, or where the value is inside the guard band.";
+    REPRODUCE_SERIES = "A run whose series U does not end earlier is reproduced bit for bit by ";
     NO_WORST = "No run is listed: every run meets this requirement, and it does not compare a single result.";
 
     // Fragility.

@@ -23,6 +23,9 @@ pub fn document(source: &Source<'_>) -> Document {
     } = source;
     let mut body = Vec::new();
     statements(source, &mut body);
+    if metadata.has_series {
+        body.push(Block::note(wording::SERIES));
+    }
     runs::requirements(source, &mut body);
     first_figure(source, &mut body);
     subset::section(source, &mut body);

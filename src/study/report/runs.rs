@@ -62,10 +62,12 @@ pub fn worst(source: &Source<'_>, body: &mut Vec<Block>) {
     }
     body.push(Block::section(wording::WORST));
     let command = format!("psd run {} --set …", source.metadata.plan);
-    body.push(Block::note(Text::from(wording::REPRODUCE).code(command)));
-    if source.metadata.has_series {
-        body.push(Block::note(wording::SERIES));
-    }
+    let reproduced = if source.metadata.has_series {
+        wording::REPRODUCE_SERIES
+    } else {
+        wording::REPRODUCE
+    };
+    body.push(Block::note(Text::from(reproduced).code(command)));
     for (index, answer) in answers.requirements.iter().enumerate() {
         body.push(Block::part(wording::worst_of(&answer.label)));
         if answer.worst.is_empty() {
