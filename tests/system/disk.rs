@@ -7,7 +7,7 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::needs;
-use crate::stage::{PSD, Stage, finish, signal, start, strace, wait};
+use crate::stage::{Ended, PSD, Stage, finish, signal, start, strace, wait};
 
 /// The last motion command is the hold.
 fn held(stage: &Stage) {
@@ -82,6 +82,17 @@ fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() 
     );
 }
 
+/// The run of a stage, with this fault in its writes to the run log.
+fn with_fault_of_writes(stage: &Stage, fault: &str) -> Ended {
+    let mut command = strace("write", fault);
+    command
+        .args(["-o", "/dev/null", "-P"])
+        .arg(stage.journal())
+        .arg(PSD);
+    stage.run_arguments(&mut command, &["--yes"]);
+    wait(&mut command)
+}
+
 #[test]
 fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
     if !needs::strace() {
@@ -89,13 +100,7 @@ fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
     }
     for error in ["ENOSPC", "EFBIG", "EDQUOT", "EIO"] {
         let stage = Stage::new();
-        let mut command = strace("write", &format!("error={error}:when=70"));
-        command
-            .args(["-o", "/dev/null", "-P"])
-            .arg(stage.journal())
-            .arg(PSD);
-        stage.run_arguments(&mut command, &["--yes"]);
-        let ran = wait(&mut command);
+        let ran = with_fault_of_writes(&stage, &format!("error={error}:when=70"));
         assert_eq!(ran.code, Some(3), "{error}: {}", ran.output);
         assert!(
             ran.output.contains("the run log could not be written"),
@@ -113,13 +118,7 @@ fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
         return;
     }
     let stage = Stage::new();
-    let mut command = strace("write", "error=EINTR:when=2+2");
-    command
-        .args(["-o", "/dev/null", "-P"])
-        .arg(stage.journal())
-        .arg(PSD);
-    stage.run_arguments(&mut command, &["--yes"]);
-    let ran = wait(&mut command);
+    let ran = with_fault_of_writes(&stage, "error=EINTR:when=2+2");
     assert_eq!(ran.code, Some(0), "{}", ran.output);
     assert_eq!(stage.verify().code, Some(0));
 }
@@ -130,13 +129,7 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
         return;
     }
     let stage = Stage::new();
-    let mut command = strace("write", "retval=2:when=70");
-    command
-        .args(["-o", "/dev/null", "-P"])
-        .arg(stage.journal())
-        .arg(PSD);
-    stage.run_arguments(&mut command, &["--yes"]);
-    let ran = wait(&mut command);
+    let ran = with_fault_of_writes(&stage, "retval=2:when=70");
     assert!(
         ran.code == Some(3) && ran.output.contains("the run log is damaged"),
         "{}",

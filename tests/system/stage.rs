@@ -394,8 +394,8 @@ fn without_times(path: &Path) -> String {
     text.lines().map(kept).collect()
 }
 
-/// strace of a program and all that it starts, at one kind of call, `fault` injected into it. It stops the program at no other call, but
-/// for a signal: strace sends none where it looks at one kind of call alone.
+/// strace of a program and all that it starts: it looks at one kind of call and injects `fault` into it, if one is stated. A filter of the
+/// kernel then stops the program at no other call. With that filter strace sends no signal, so that a signal needs all calls.
 pub fn strace(call: &str, fault: &str) -> Command {
     let mut command = Command::new("strace");
     command.args(["-f", "-e", &format!("trace={call}")]);

@@ -7,11 +7,11 @@
     reason = "a part of the loop over the steps, which computes what its parts read"
 )]
 
+use std::cell::Cell;
+
 use super::recorded_path::{Reading, RecordedPath};
 use crate::impact::peaks::farther;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
-use std::cell::Cell;
-
 use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, from_start};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
